@@ -60,6 +60,7 @@ def model(folder):
             model_gpu.print_measured(kernels, folder)
         for edge in (128, 256):
             model_gpu.print_steps(kernels, edge)
+        model_gpu.print_replicas(kernels)
         model_gpu.print_kernels(kernels, 256)
     return text.getvalue()
 

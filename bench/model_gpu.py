@@ -135,6 +135,28 @@ def print_steps(kernels, edge):
               f"{' | '.join(f'{t * 1e12:.1f} ({memory / t:.2f})' for t, memory in cells)} |")
 
 
+def print_replicas(kernels):
+    print("\na step of many small lattices, in batches: ps a spin (what limits it)\n")
+    print("| | " + " | ".join(SIZE) + " |")
+    print("|---" * (1 + len(SIZE)) + "|")
+    found = {}
+    for kernel in kernels:
+        # The spins of a team stay in the first cache, which passes each store on to the second.
+        times = seconds(kernel, 1, 1)
+        times = {name: times[name] for name in ("issue", "arithmetic", "integers", "first cache")}
+        times["second cache"] = kernel.stores * SIZE[kernel.precision] / SECOND_CACHE
+        bound = max(times, key=times.get)
+        step = found.setdefault((METHODS[kernel.method], kernel.precision), [0, []])
+        step[0] += times[bound]
+        if bound not in step[1]:
+            step[1].append(bound)
+    for method in METHODS.values():
+        cells = [found[method, precision] for precision in SIZE if (method, precision) in found]
+        if cells:
+            print(f"| {method} | " + " | ".join(
+                f"{time * 1e12:.1f} ({', '.join(names)})" for time, names in cells) + " |")
+
+
 def card_of(context):
     """Returns the GPU that a benchmark ran on; without one, its execution space."""
     configuration = context.get("kokkos_configuration", "")
@@ -177,6 +199,7 @@ def main():
     kernels = read_kernels()
     print_kernels(kernels, arguments.edge)
     print_steps(kernels, arguments.edge)
+    print_replicas(kernels)
     if arguments.measured:
         print_measured(kernels, arguments.measured)
 

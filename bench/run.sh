@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Runs bench_throughput, bench_few_spins, bench_options and bench_evaluations with OMP_NUM_THREADS
-# threads (default: all cores), and bench_throughput also with one thread. Then prints tables of the
-# results and draws them. Usage: PYTHON=python3 bash bench/run.sh BUILD_DIR
+# Runs bench_throughput, bench_few_spins, bench_replicas, bench_options and bench_evaluations with
+# OMP_NUM_THREADS threads (default: all cores), and bench_throughput also with one thread. Then
+# prints tables of the results and draws them. Usage: PYTHON=python3 bash bench/run.sh BUILD_DIR
 set -euo pipefail
 
 build_dir=$1
@@ -38,6 +38,7 @@ throughput large "$threads" '/(256|L2)/'
 throughput larger "$threads" "$drawn/(192|292)/" --benchmark_repetitions=3
 throughput one_thread 1 '/(32|64|128|L2)/' --benchmark_repetitions=3
 run few_spins "$threads" few_spins --benchmark_repetitions=9
+run replicas "$threads" replicas --benchmark_repetitions=3
 run options "$threads" options
 run evaluations "$threads" evaluations --benchmark_repetitions=9
 "$PYTHON" python/plot_bench.py "$results"

@@ -155,7 +155,21 @@ def memory(results):
                    results.median(f"f64/{method}/L2", "work_bytes"), 80, at_most=True)
 
 
+def on_a_gpu(results):
+    """Goals for an H100: ps a spin and step, and steps a second of a lattice of 4096 spins."""
+    if any(context["execution_space"] in ("OpenMP", "Serial", "Threads")
+           for context in results.context.values()):
+        return
+    for case, goal in (("f64/Heun/256", 30), ("f64/RKMK4/256", 80), ("f32/RKMK4/256", 45),
+                       ("replicas/f64 RKMK4/1000 of 10^3", 55)):
+        time = results.median(case, "ns/spin")
+        yield Goal(f"{case}, ps a spin", None if time is None else 1000 * time, goal, at_most=True)
+    time = results.median("replicas/f64 RKMK4/1 of 16^3", "ns/spin")
+    yield Goal("4096 spins, f64, RKMK4, M steps/s",
+               None if time is None else 1000 / (4096 * time), 0.3)
+
+
 def goals(results):
     for part in (against_hand_written, against_probes, against_limits, against_itself, few_spins,
-                 per_evaluation, memory):
+                 per_evaluation, memory, on_a_gpu):
         yield from part(results)

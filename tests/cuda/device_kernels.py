@@ -64,5 +64,5 @@ def short_names(symbols):
     names = subprocess.run(["c++filt"], input="\n".join(symbols), check=True, text=True,
                            stdout=subprocess.PIPE).stdout.splitlines()
     for name in names:
-        inner = re.search(r"ParallelFor<(.*?), Kokkos::RangePolicy", name)
+        inner = re.search(r"ParallelFor<(.*?), Kokkos::(Range|Team)Policy", name)
         yield re.sub(r"(cayspin|detail|stepper|tableau)::", "", inner[1] if inner else name)

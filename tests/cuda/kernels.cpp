@@ -21,6 +21,12 @@ void step_each(Generator const& generator, Spins& spins, std::tuple<Steppers...>
              steppers);
 }
 
+/// Takes steps in one launch.
+template <class Generator, class Spins, class... Steppers>
+void batch_each(Generator const& generator, Spins& spins, Steppers&... steppers) {
+  (steppers.batch(Exec(), generator, spins, 0, 0.1, 3), ...);
+}
+
 template <class Real>
 struct Steppers {
   using S = SpinField<Real, MemorySpace>;
@@ -46,6 +52,10 @@ struct Steppers {
   void step(LandauLifshitz<Field> const& generator, RigidBody const& body, S& spins) {
     step_each(generator, spins, of_spins);
     step_each(body, spins, of_bodies);
+    batch_each(generator, spins, std::get<LieEuler<S>>(of_spins), std::get<LieHeun<S>>(of_spins),
+               std::get<Rkmk4<S>>(of_spins), std::get<Compensated<Rkmk4<S>>>(of_spins),
+               std::get<StereographicRungeKutta<S, tableau::Classical4>>(of_spins));
+    batch_each(body, spins, std::get<Rkmk4<S, isotropy::Energy>>(of_bodies));
     EnergyControl(spins, generator)(Exec(), Step{}, spins);
     EnergyControl(spins, body)(Exec(), Step{}, spins);
   }
@@ -80,6 +90,7 @@ struct Generators {
   double use(LieEuler<S>& stepper, S& spins, Numbers const& weights) const {
     auto const one = [&](auto const& generator) {
       stepper.step(Exec(), generator, spins, 0, 0.1);
+      stepper.batch(Exec(), generator, spins, 0, 0.1, 3);
       return energy(Exec(), generator, spins).value + largest_rate(Exec(), generator, spins);
     };
     minimize(Exec(), std::get<0>(generators).field(), spins);

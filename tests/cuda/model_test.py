@@ -4,6 +4,8 @@
 reach the required share of the bandwidth. Tests the report of a run on a GPU, with made-up
 results."""
 
+import contextlib
+import io
 import json
 import pathlib
 import sys
@@ -53,6 +55,14 @@ class Model(unittest.TestCase):
         for method in ("Euler", "Heun", "RKMK4"):
             self.assertGreaterEqual(share(self.kernels, "f64", method), 0.9, method)
             self.assertGreaterEqual(share(self.kernels, "f32", method), 0.8, method)
+
+    def test_batches_of_small_lattices(self):
+        # Instructions of integers: 60 for a site and 80 for a thread, which has one site
+        kernel = model_gpu.Kernel("f64_LieEuler_0 240 60 21 60 3 16 56")
+        with contextlib.redirect_stdout(io.StringIO()) as text:
+            model_gpu.print_replicas([kernel])
+        expected = 140 / 64 / 132 / 1.755e-3
+        self.assertIn(f"| Euler | {expected:.1f} (integers) |", text.getvalue())
 
     def test_a_branching_kernel_is_not_bound_by_memory(self):
         self.assertLess(share([BRANCHING], "f64", "Euler"), 0.8)

@@ -45,8 +45,7 @@ class Batches : public ::testing::Test {
     Times const times{0.25, 0.01, 60};
     auto spins = start();
     Stepper stepper(spins), by_hand(spins);
-    constexpr bool host = detail::is_host_execution<typename Backend::Exec>;
-    EXPECT_EQ(stepper.takes_batches(exec, generator, spins), batches && host);
+    EXPECT_EQ(stepper.takes_batches(exec, generator, spins), batches);
     std::vector<std::pair<std::int64_t, std::vector<double>>> kept, expected;
     auto const summary = integrate(exec, stepper, generator, spins, times, Keep<Spins>{&kept});
     EXPECT_EQ(summary.steps, 60);
@@ -69,6 +68,25 @@ TYPED_TEST(Batches, AreStepsToTheBit) {
   this->template expect_same<LieEuler<Spins>>(this->generator(), true);
   this->template expect_same<LieHeun<Spins>>(orthogonal(this->generator()), true);
   this->template expect_same<Rkmk4<Spins>>(this->generator(), true);
+}
+
+// A device gives each team several small replicas or a larger one; the last team may have fewer.
+TYPED_TEST(Batches, OfReplicasAreStepsToTheBit) {
+  using Spins = typename TypeParam::Spins;
+  auto const periodic = Boundary::periodic;
+  for (auto const& one : {Lattice::chain(1).with_replicas(300), Lattice::chain(7).with_replicas(50),
+                          Lattice::square(3, 4, 1, periodic).with_replicas(31),
+                          Lattice::square(16, 12).with_replicas(5),
+                          Lattice::cubic(5, 6, 7, 1, periodic).with_replicas(9),
+                          Lattice::cubic(4, 3, 5).with_replicas(11), Lattice::chain(1000)}) {
+    this->lattice = one;
+    this->template expect_same<LieEuler<Spins>>(this->generator(), true);
+    this->template expect_same<LieHeun<Spins>>(orthogonal(this->generator()), true);
+    this->template expect_same<Rkmk4<Spins>>(this->generator(), true);
+    this->template expect_same<ProjectedRk4<Spins>>(this->generator(), true);
+    this->template expect_same<Compensated<LieHeun<Spins>>>(this->generator(), true);
+    this->template expect_same<StereographicRungeKutta<Spins>>(this->generator(), true);
+  }
 }
 
 TYPED_TEST(Batches, AreNotTakenWhereTheGeneratorChanges) {

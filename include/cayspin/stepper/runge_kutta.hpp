@@ -3,6 +3,7 @@
 
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/batch.hpp>
+#include <cayspin/detail/batch_in_teams.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stage/kernel.hpp>
 #include <cayspin/stage/memory.hpp>
@@ -25,6 +26,9 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
                                                 detail::StageMemory<Spins, Tableau, Update>> {
   using Base = detail::StagedStepper<Spins, Tableau, Update, Isotropy,
                                      detail::StageMemory<Spins, Tableau, Update>>;
+  // On devices, the kernels of methods with more stages would take long to compile.
+  template <class Exec>
+  static constexpr bool has_batches = detail::is_host_execution<Exec> || Tableau::stages <= 4;
 
  public:
   using typename Base::Real;
@@ -80,21 +84,20 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     visit(memory_.end());
   }
 
-  /// Returns true if `batch` can take steps of these spins: there are few of them, on a host space
-  /// and not on a part of a lattice, stages run as passes, and the generator does not change
-  /// between steps.
+  /// Returns true if `batch` can take steps of these spins: on a host space there are few of them,
+  /// and on a device few in each replica and at most four stages; they are not on a part of a
+  /// lattice, stages run as passes, and the generator does not change between steps.
   template <class Exec, class Generator>
   bool takes_batches(Exec const& exec, Generator const& generator, Spins const& spins) const {
-    return this->path() == Path::pass && this->lattice_.part == nullptr &&
-           detail::runs_on_calling_thread<Exec>(spins.sites()) &&
-           detail::is_stationary(generator, exec, spins);
+    return has_batches<Exec> && this->path() == Path::pass && this->lattice_.part == nullptr &&
+           is_small(exec, spins) && detail::is_stationary(generator, exec, spins);
   }
 
   /// Takes `count` steps in one or two launches; the result is bitwise identical to that of `count`
   /// calls of `step`. Throws std::invalid_argument like `step`, when `count` is below 1, and when
   /// takes_batches is false.
   template <class Exec, class Generator>
-    requires detail::is_host_execution<Exec>
+    requires(has_batches<Exec>)
   void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
              std::int64_t count) {
     auto const region = this->begin_step(exec, spins, "::batch");
@@ -105,8 +108,16 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
       throw std::invalid_argument(
           this->label("::batch: these steps have to be taken one by one (takes_batches)"));
     constexpr int steps = stages == 1 ? 2 : 1;  // in one pass through the loops
-    detail::repeat_on_calling_thread(batch_label_, count / steps,
-                                     loops_of_steps(prepared, spins, dt));
+    auto const loops = loops_of_steps<Exec>(prepared, spins, dt);
+    if constexpr (detail::is_host_execution<Exec>)
+      detail::repeat_on_calling_thread(batch_label_, count / steps, loops);
+    else
+      std::apply(
+          [&](auto const&... stage) {
+            detail::repeat_in_teams<Real>(exec, batch_label_, count / steps, spins.layout(),
+                                          stage...);
+          },
+          loops);
     if (count % steps != 0) step(exec, generator, spins, t, dt);
   }
 
@@ -159,12 +170,24 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     swap(spins, memory_.end());
   }
 
-  // Returns the loops of one step, or of two if each step swaps the memory of the spins.
-  template <class Prepared>
+  template <class Exec>
+  static bool is_small(Exec const& exec, Spins const& spins) {
+    if constexpr (detail::is_host_execution<Exec>)
+      return detail::runs_on_calling_thread<Exec>(spins.sites());
+    else
+      return detail::ReplicaTeams::suit(exec, spins.layout());
+  }
+
+  // Returns the stages of one step, or of two if each step swaps the memory of the spins: on hosts
+  // as loops over the sites, on devices as functors of one site.
+  template <class Exec, class Prepared>
   auto loops_of_steps(Prepared const& prepared, Spins& spins, double dt) {
     auto const loop = [&]<int Stage>(std::integral_constant<int, Stage>) {
-      return detail::StageRowLoop(kernel<Stage>(prepared, dt), fields<Stage>(spins),
-                                  spins.layout());
+      if constexpr (detail::is_host_execution<Exec>)
+        return detail::StageRowLoop(kernel<Stage>(prepared, dt), fields<Stage>(spins),
+                                    spins.layout());
+      else
+        return detail::StageOnSite(kernel<Stage>(prepared, dt), fields<Stage>(spins));
     };
     if constexpr (stages == 1) {
       constexpr std::integral_constant<int, 0> only;

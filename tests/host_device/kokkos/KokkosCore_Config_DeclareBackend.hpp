@@ -3,5 +3,6 @@
 
 #include "../parallel.hpp"
 #include "../specializations.hpp"
+#include "../teams.hpp"
 
 #include_next <KokkosCore_Config_DeclareBackend.hpp>

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Nanoseconds per spin and step of small lattices: many replicas in one field, or one lattice by
+// itself. In the cases replicas/PRECISION METHOD/REPLICAS of SIZE, cayspin::integrate takes the
+// steps, many in one launch where it can; in .../REPLICAS of SIZE, one by one, each stage is a
+// launch.
+#include "main.hpp"
+#include "scene.hpp"
+
+#include <cstdint>
+#include <string>
+
+namespace {
+
+constexpr std::int64_t steps = 100;
+
+template <class Stepper>
+void run(benchmark::State& state, cayspin::Lattice const& lattice, bool together) {
+  auto spins = scene::random<typename Stepper::spins_type>(lattice);
+  auto const generator = scene::Default::generator(lattice);
+  Stepper stepper(spins);
+  Kokkos::DefaultExecutionSpace const exec;
+  auto const advance = [&] {
+    if (together)
+      cayspin::integrate(exec, stepper, generator, spins,
+                         {.begin = 0, .dt = scene::dt, .steps = steps});
+    else
+      for (std::int64_t i = 0; i < steps; ++i) stepper.step(exec, generator, spins, 0, scene::dt);
+    exec.fence();
+  };
+  advance();
+  for (auto _ : state) advance();
+  scene::report(state, steps * lattice.sites(), 0, scene::work_bytes(stepper));
+}
+
+template <class Stepper>
+void add(std::string const& name) {
+  using cayspin::Lattice;
+  for (auto const& [lattice, size] :
+       {scene::Size{Lattice::cubic(10, 10, 10).with_replicas(1000), "1000 of 10^3"},
+        scene::Size{Lattice::square(16, 16).with_replicas(1000), "1000 of 16^2"},
+        scene::Size{Lattice::chain(100).with_replicas(1000), "1000 of 100"},
+        scene::Size{Lattice::chain(1).with_replicas(100000), "100000 of 1"},
+        scene::Size{Lattice::cubic(10, 10, 10), "1 of 10^3"},
+        scene::Size{Lattice::cubic(16, 16, 16), "1 of 16^3"}})
+    for (bool const together : {true, false})
+      scene::add(name + "/" + size + (together ? "" : ", one by one"),
+                 [=, lattice = lattice](benchmark::State& state) {
+                   run<Stepper>(state, lattice, together);
+                 });
+}
+
+template <class Real>
+void add_methods(std::string const& precision) {
+  using Spins = cayspin::SpinField<Real>;
+  add<cayspin::LieHeun<Spins>>("replicas/" + precision + " Heun");
+  add<cayspin::Rkmk4<Spins>>("replicas/" + precision + " RKMK4");
+}
+
+}  // namespace
+
+void register_benchmarks() {
+  add_methods<double>("f64");
+  add_methods<float>("f32");
+}
