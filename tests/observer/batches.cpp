@@ -6,6 +6,9 @@
 #include <cayspin/cayspin.hpp>
 
 #include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace cayspin::test {
 namespace {
@@ -89,6 +92,19 @@ TYPED_TEST(Batches, OfReplicasAreStepsToTheBit) {
   }
 }
 
+// A device takes 1000 steps in a launch, and then the others.
+TYPED_TEST(Batches, OfManyStepsAreStepsToTheBit) {
+  using Spins = typename TypeParam::Spins;
+  this->lattice = Lattice::chain(3);
+  auto const generator = this->generator();
+  auto spins = this->start(), other = this->start();
+  LieHeun<Spins> stepper(spins), by_hand(other);
+  stepper.batch(this->exec, generator, spins, 0, 0.01, 1003);
+  for (int step = 0; step < 1003; ++step) by_hand.step(this->exec, generator, other, 0, 0.01);
+  this->exec.fence();
+  EXPECT_EQ(numbers_of(spins), numbers_of(other));
+}
+
 TYPED_TEST(Batches, AreNotTakenWhereTheGeneratorChanges) {
   using Spins = typename TypeParam::Spins;
   auto const turning = [](double t) { return Vec3<double>{std::cos(t), std::sin(t), 0}; };
@@ -96,6 +112,42 @@ TYPED_TEST(Batches, AreNotTakenWhereTheGeneratorChanges) {
   this->template expect_same<Rkmk4<Spins>>(generator, false);
   LandauLifshitz const by_mean(EffectiveField{MeanField(1)}, 0.1);
   this->template expect_same<LieEuler<Spins>>(by_mean, false);
+}
+
+// Runs as many threads as an H100: 33 times 8192.
+struct LargeDevice {
+  int concurrency() const { return 270'336; }
+};
+
+bool takes_in_teams(Lattice const& lattice) {
+  return detail::ReplicaTeams::suit(LargeDevice(), RowLayout::of<double>(lattice));
+}
+
+TEST(ReplicaTeams, TakeSmallReplicas) {
+  EXPECT_TRUE(takes_in_teams(Lattice::chain(1)));
+  EXPECT_TRUE(takes_in_teams(Lattice::chain(1024)));
+  EXPECT_FALSE(takes_in_teams(Lattice::chain(1025)));
+  EXPECT_TRUE(takes_in_teams(Lattice::cubic(16, 16, 16).with_replicas(33)));
+  EXPECT_FALSE(takes_in_teams(Lattice::cubic(16, 16, 16).with_replicas(32)));
+  EXPECT_FALSE(takes_in_teams(Lattice::chain(4097).with_replicas(1000)));
+}
+
+TEST(ReplicaTeams, HaveOffsetsOf32Bits) {
+  // A row of one site takes eight numbers, and one more plane has to fit.
+  std::int64_t const most = (std::int64_t(1) << 28) - 2;
+  EXPECT_TRUE(takes_in_teams(Lattice::chain(1).with_replicas(most)));
+  EXPECT_FALSE(takes_in_teams(Lattice::chain(1).with_replicas(most + 1)));
+}
+
+TEST(ReplicaTeams, TakeFewStepsOfManySitesInALaunch) {
+  auto const most_repeats = [](std::int64_t replicas) {
+    auto const lattice = Lattice::chain(1024).with_replicas(replicas);
+    return detail::ReplicaTeams::most_repeats(RowLayout::of<double>(lattice));
+  };
+  EXPECT_EQ(most_repeats(1), 1000);
+  EXPECT_EQ(most_repeats(1 << 15), 32);
+  EXPECT_EQ(most_repeats(1 << 20), 1);
+  EXPECT_EQ(most_repeats((1 << 20) + 1), 1);
 }
 
 }  // namespace

@@ -93,8 +93,8 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
            is_small(exec, spins) && detail::is_stationary(generator, exec, spins);
   }
 
-  /// Takes `count` steps in one or two launches; the result is bitwise identical to that of `count`
-  /// calls of `step`. Throws std::invalid_argument like `step`, when `count` is below 1, and when
+  /// Takes `count` steps in few launches; the result is bitwise identical to that of `count` calls
+  /// of `step`. Throws std::invalid_argument like `step`, when `count` is below 1, and when
   /// takes_batches is false.
   template <class Exec, class Generator>
     requires(has_batches<Exec>)
