@@ -11,6 +11,7 @@ resources do not overlap perfectly. The lattice is a cube with N sites along eac
 the folder with the results of bench/run.sh, whose times are printed beside those of the model.
 """
 import argparse
+import math
 import pathlib
 import re
 import sys
@@ -55,6 +56,10 @@ class Kernel:
         return self.loads - 18 + self.stores
 
     @property
+    def memory_bytes(self):
+        return self.words * SIZE[self.precision]
+
+    @property
     def warps(self):
         """Warps that fit on a multiprocessor. A thread gets registers in multiples of 8, and
         warps are allocated four at a time."""
@@ -76,7 +81,7 @@ def seconds(kernel, bandwidth, edge):
     # along z, two layers; along x, a sector at each end of its rows.
     stencil = 3 * (size * (1 + 2 / 4 + 2 / sites) + 2 * SECTOR / 32)
     return {
-        "memory": kernel.words * size / bandwidth,
+        "memory": kernel.memory_bytes / bandwidth,
         "second cache": (stencil + (kernel.words - 3) * size) / SECOND_CACHE,
         "issue": (kernel.loop + once) / LANES / SCHEDULERS * clocks,
         "arithmetic": kernel.arithmetic / ARITHMETIC[kernel.precision] * clocks,
@@ -101,26 +106,42 @@ def print_kernels(kernels, edge):
     for kernel in kernels:
         rest = seconds(kernel, 1, edge)
         once = (kernel.total - kernel.loop) / walk(edge)
-        times = [kernel.words * SIZE[kernel.precision] / rate for rate in CARDS.values()]
+        times = [kernel.memory_bytes / rate for rate in CARDS.values()]
         times += [rest[column] for column in columns]
-        print(f"| {kernel.name} | {kernel.words * SIZE[kernel.precision]} "
+        print(f"| {kernel.name} | {kernel.memory_bytes} "
               f"| {kernel.loop + once:.0f} | {kernel.warps} "
               f"| {' | '.join(f'{time * 1e12:.1f}' for time in times)} |")
 
 
-def steps(kernels, bandwidth, edge):
-    """Returns {(precision, method): [seconds per site, seconds per site if only memory limited the
-    kernels, resources that limit them]}."""
+def seconds_in_batch(kernel):
+    """Like seconds(), for a small lattice in a batch: each thread has one site, and the spins stay
+    in the first cache, which passes each store on to the second."""
+    times = seconds(kernel, bandwidth=math.inf, edge=1)
+    return {
+        **{name: times[name] for name in ("issue", "arithmetic", "integers", "first cache")},
+        "second cache": kernel.stores * SIZE[kernel.precision] / SECOND_CACHE,
+    }
+
+
+def slowest(kernels, seconds_of):
+    """Returns {(precision, method): (seconds per site and step, resources that limit the kernels)}.
+    seconds_of(kernel): the seconds per site that each resource needs."""
     found = {}
     for kernel in kernels:
-        times = seconds(kernel, bandwidth, edge)
+        times = seconds_of(kernel)
         bound = max(times, key=times.get)
-        step = found.setdefault((kernel.precision, METHODS[kernel.method]), [0, 0, []])
-        step[0] += times[bound]
-        step[1] += times["memory"]
-        if bound not in step[2]:
-            step[2].append(bound)
+        key = kernel.precision, METHODS[kernel.method]
+        time, bounds = found.get(key, (0, []))
+        found[key] = time + times[bound], bounds if bound in bounds else [*bounds, bound]
     return found
+
+
+def steps(kernels, bandwidth, edge):
+    """Returns {(precision, method): (seconds per site, seconds per site if only memory limited the
+    kernels, resources that limit them)}."""
+    found = slowest(kernels, lambda kernel: seconds(kernel, bandwidth, edge))
+    memory = slowest(kernels, lambda kernel: {"memory": kernel.memory_bytes / bandwidth})
+    return {key: (time, memory[key][0], bounds) for key, (time, bounds) in found.items()}
 
 
 def print_steps(kernels, edge):
@@ -139,19 +160,9 @@ def print_replicas(kernels):
     print("\na step of many small lattices, in batches: ps a spin (what limits it)\n")
     print("| | " + " | ".join(SIZE) + " |")
     print("|---" * (1 + len(SIZE)) + "|")
-    found = {}
-    for kernel in kernels:
-        # The spins of a team stay in the first cache, which passes each store on to the second.
-        times = seconds(kernel, 1, 1)
-        times = {name: times[name] for name in ("issue", "arithmetic", "integers", "first cache")}
-        times["second cache"] = kernel.stores * SIZE[kernel.precision] / SECOND_CACHE
-        bound = max(times, key=times.get)
-        step = found.setdefault((METHODS[kernel.method], kernel.precision), [0, []])
-        step[0] += times[bound]
-        if bound not in step[1]:
-            step[1].append(bound)
+    found = slowest(kernels, seconds_in_batch)
     for method in METHODS.values():
-        cells = [found[method, precision] for precision in SIZE if (method, precision) in found]
+        cells = [found[precision, method] for precision in SIZE if (precision, method) in found]
         if cells:
             print(f"| {method} | " + " | ".join(
                 f"{time * 1e12:.1f} ({', '.join(names)})" for time, names in cells) + " |")
@@ -176,11 +187,11 @@ def print_measured(kernels, folder):
           f"{copy / CARDS[card]:.2f} of the bandwidth of an {card}\n")
     print(f"| case | ps a spin | model, {card} | measured over model | share of the copy |")
     print("|---|---|---|---|---|")
-    words = {}
+    moved = {}
     for kernel in kernels:
         key = kernel.precision, METHODS[kernel.method]
-        words[key] = words.get(key, 0) + kernel.words * SIZE[kernel.precision]
-    for (precision, method), bytes_moved in words.items():
+        moved[key] = moved.get(key, 0) + kernel.memory_bytes
+    for (precision, method), bytes_moved in moved.items():
         for edge in (64, 128, 256):
             case = f"{precision}/{method}/{edge}"
             if (time := results.median(case, "ns/spin")) is None:

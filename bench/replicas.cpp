@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Nanoseconds per spin and step of small lattices: many replicas in one field, or one lattice by
-// itself. In the cases replicas/PRECISION METHOD/REPLICAS of SIZE, cayspin::integrate takes the
-// steps, many in one launch where it can; in .../REPLICAS of SIZE, one by one, each stage is a
-// launch.
+// Nanoseconds per spin and step of small lattices: many replicas in one field, or a single lattice.
+// In the cases replicas/PRECISION METHOD/REPLICAS of SIZE, cayspin::integrate takes the steps, and
+// can take many in one launch. If "one by one" is added, each step is a call of step().
 #include "main.hpp"
 #include "scene.hpp"
 
@@ -14,17 +13,17 @@ namespace {
 constexpr std::int64_t steps = 100;
 
 template <class Stepper>
-void run(benchmark::State& state, cayspin::Lattice const& lattice, bool together) {
+void run(benchmark::State& state, cayspin::Lattice const& lattice, bool one_by_one) {
   auto spins = scene::random<typename Stepper::spins_type>(lattice);
   auto const generator = scene::Default::generator(lattice);
   Stepper stepper(spins);
   Kokkos::DefaultExecutionSpace const exec;
   auto const advance = [&] {
-    if (together)
+    if (one_by_one)
+      for (std::int64_t i = 0; i < steps; ++i) stepper.step(exec, generator, spins, 0, scene::dt);
+    else
       cayspin::integrate(exec, stepper, generator, spins,
                          {.begin = 0, .dt = scene::dt, .steps = steps});
-    else
-      for (std::int64_t i = 0; i < steps; ++i) stepper.step(exec, generator, spins, 0, scene::dt);
     exec.fence();
   };
   advance();
@@ -42,10 +41,10 @@ void add(std::string const& name) {
         scene::Size{Lattice::chain(1).with_replicas(100000), "100000 of 1"},
         scene::Size{Lattice::cubic(10, 10, 10), "1 of 10^3"},
         scene::Size{Lattice::cubic(16, 16, 16), "1 of 16^3"}})
-    for (bool const together : {true, false})
-      scene::add(name + "/" + size + (together ? "" : ", one by one"),
+    for (bool const one_by_one : {false, true})
+      scene::add(name + "/" + size + (one_by_one ? ", one by one" : ""),
                  [=, lattice = lattice](benchmark::State& state) {
-                   run<Stepper>(state, lattice, together);
+                   run<Stepper>(state, lattice, one_by_one);
                  });
 }
 

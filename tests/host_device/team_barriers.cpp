@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Teams on the emulated device: each thread of each team runs once, and not before the fence; after
-// a barrier, a thread sees what the others wrote before it; without one, some do not.
+// Teams on the emulated device. Each thread of each team runs once, and not before the fence. After
+// a barrier, every thread sees what the others wrote before it; without a barrier, some do not.
 #include "../support/backends.hpp"
 
 using namespace cayspin::test;
@@ -40,6 +40,7 @@ int wrong_numbers(bool waits) {
 }
 
 TEST(Teams, WaitAtBarriers) { EXPECT_EQ(wrong_numbers(true), 0); }
+// The last thread of a team sees what the first one wrote.
 TEST(Teams, DoNotWaitWithoutABarrier) { EXPECT_EQ(wrong_numbers(false), teams * (threads - 1)); }
 
 struct EndsEarly {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace cayspin::test {
@@ -13,8 +15,8 @@ namespace {
 /// A call that others can interrupt and continue, on a stack of its own.
 class Coroutine {
  public:
-  /// `body` is called at the first continue_now(); it calls the function that it is given to
-  /// return to the caller of continue_now().
+  /// The first continue_now() calls body(pause). There, pause() returns to the caller of
+  /// continue_now(), and the next continue_now() returns from pause().
   explicit Coroutine(std::function<void(std::function<void()> const&)> body)
       : body_(std::move(body)), stack_(bytes) {
     getcontext(&here_);
@@ -53,8 +55,8 @@ void run_teams(int league_size, int team_size,
   for (int team = 0; team < league_size; ++team) {
     std::vector<std::unique_ptr<Coroutine>> threads;
     for (int rank = 0; rank < team_size; ++rank)
-      threads.push_back(std::make_unique<Coroutine>([&, rank](auto const& barrier) {
-        body(HostDeviceTeam(team, league_size, rank, team_size, barrier));
+      threads.push_back(std::make_unique<Coroutine>([&, rank](auto const& pause) {
+        body(HostDeviceTeam(team, league_size, rank, team_size, pause));
       }));
     auto const has_ended = [](auto const& thread) { return thread->has_ended(); };
     while (std::ranges::none_of(threads, has_ended))

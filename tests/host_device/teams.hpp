@@ -61,6 +61,7 @@ class TeamPolicyInternal<cayspin::test::HostDevice, Properties...>
   int team_size() const { return team_size_; }
   bool impl_auto_team_size() const { return false; }
   bool impl_auto_vector_length() const { return false; }
+  /// Returns a small odd number, so that threads have several sites each, and not equally many.
   template <class Functor>
   int team_size_max(Functor const&, ParallelForTag const&) const {
     return 3;
@@ -78,11 +79,10 @@ class ParallelFor<Functor, TeamPolicy<Properties...>, cayspin::test::HostDevice>
   ParallelFor(Functor const& functor, Policy const& policy) : functor_(functor), policy_(policy) {}
 
   void execute() const {
-    policy_.space().enqueue([functor = functor_, leagues = policy_.league_size(),
-                             threads = policy_.team_size()] {
-      cayspin::test::run_teams(
-          leagues, threads, [&](cayspin::test::HostDeviceTeam const& thread) { functor(thread); });
-    });
+    policy_.space().enqueue(
+        [functor = functor_, teams = policy_.league_size(), threads = policy_.team_size()] {
+          cayspin::test::run_teams(teams, threads, [&](auto const& thread) { functor(thread); });
+        });
   }
 
  private:
