@@ -59,9 +59,9 @@ class EnsembleRun {
   std::vector<io::ReplicaState> states(std::size_t first);
 
   /// Returns the first warning of a replica about its steps, with the replica's number. If the
-  /// replicas are columns with different values, only those are asked whose steps may be the least
-  /// accurate: the one with the most noise, and those with the largest fields and dampings. Throws
-  /// the warning as io::SceneError if the scene sets refuse_unstable.
+  /// replicas are columns with different values, only those whose steps may be the least accurate
+  /// are checked: the one with the most noise, and those with the largest fields and dampings.
+  /// Throws the warning as io::SceneError if the scene sets refuse_unstable.
   std::optional<std::string> warning() const;
 
   /// Returns the number of steps that every replica has taken, not counting replicas that ended

@@ -12,6 +12,7 @@
 namespace cayspin::simulation {
 namespace {
 
+/// Numbers of stored fields.
 struct Fields {
   std::int64_t scalars = 0, vectors = 0;
 
@@ -22,29 +23,35 @@ struct Fields {
 void add_bonds(io::Field const& field, Lattice const& lattice, Fields& stored) {
   int axes = 0;
   for (int axis = 0; axis < 3; ++axis) axes += lattice.has_neighbors(axis) ? 1 : 0;
-  if (field.exchange_factors.there()) stored.scalars += 1 + axes;
+  if (field.exchange_factors.there()) stored.scalars += 1 + axes;  // constants, bonds
   if (field.dmi_factors.there()) stored.scalars += field.dmi_normals.there() ? 3 : 1;
   bool const has_faces = field.exchange_at_faces.there();
   stored.add_scalar_if(has_faces);
+  constexpr int of_next = 2;                 // bilinear, biquadratic
+  int const of_distant = has_faces ? 3 : 2;  // also the exchange
+  constexpr int directions = 2;
   std::set<std::int64_t> ranges;
   for (auto const& bond : field.interlayers) ranges.insert(bond.range);
   for (auto const range : ranges)
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (range == 0 && lattice.has_neighbors(static_cast<int>(axis)))
-        stored.scalars += 2;
+        stored.scalars += of_next;
       else if (range > 0 && range + 1 < lattice.shape[axis])
-        stored.scalars += has_faces ? 6 : 4;
+        stored.scalars += directions * of_distant;
 }
 
 void add_anisotropies(io::Scene const& scene, Fields& stored) {
+  auto const add_constants = [&](auto const& term) {
+    stored.scalars += term.constant2 != 0 || term.factors2.there() ? 2 : 1;
+  };
   for (auto const& term : scene.field.anisotropies) {
     if (term.is_plain()) continue;
-    stored.scalars += term.constant2 != 0 || term.factors2.there() ? 2 : 1;
+    add_constants(term);
     stored.add_vector_if(term.axes.there());
   }
   for (auto const& term : scene.field.crystal_anisotropies) {
     if (term.is_plain()) continue;
-    stored.scalars += term.constant2 != 0 || term.factors2.there() ? 2 : 1;
+    add_constants(term);
     if (term.axes_of_sites[0].there() || term.axes_of_sites[1].there()) stored.vectors += 2;
   }
   stored.add_scalar_if(slab_of_moments(scene).has_value());

@@ -18,8 +18,8 @@ std::int64_t field_bytes(Lattice const& lattice, int components) {
                                    sizeof(Real));
 }
 
-/// Returns the bytes that the terms of a scene's field store. Interlayers count along all axes,
-/// although most scenes have faces along one only.
+/// Returns the bytes that the terms of a scene's field store. Interlayers are counted along all
+/// axes. Most scenes have them along only one, and need less.
 template <class Real>
 std::int64_t memory_of_terms(io::Scene const& scene, Lattice const& lattice);
 

@@ -35,9 +35,9 @@ namespace {
 constexpr std::int64_t most_zero_modes = 4;  // of a state with more, fewer modes are climbed
 // Curvatures of zero modes are below this fraction of the field without exchange.
 constexpr double zero_mode = 1e-4;
-// A state that is found again in double precision has the energy of the path's state up to this
-// part of the lower barrier, unless it is another state or the path's state is far from rest.
-constexpr double same_energy = 1e-2;
+// If a state's energy changes by more than this fraction of the lower barrier when the state is
+// found again in double precision, another state was found, or the path's state was far from rest.
+constexpr double largest_energy_change = 1e-2;
 
 struct Interrupted {};
 
@@ -56,7 +56,7 @@ void require_same_states(std::array<double, 3> const& given, std::array<double, 
   double const barrier = given[1] - std::max(given[0], given[2]);
   constexpr std::array names{"the start", "the saddle", "the end"};
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (!(std::abs(found[i] - given[i]) <= same_energy * barrier))
+    if (!(std::abs(found[i] - given[i]) <= largest_energy_change * barrier))
       throw NumbersFailed(
           fmt::format("rates: in double precision, the search leads from {} to a state of another "
                       "energy; accepted: a smaller bound on the torque, or a path in double "

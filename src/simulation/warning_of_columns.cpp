@@ -16,7 +16,7 @@
 namespace cayspin::simulation {
 namespace {
 
-/// A bound on the part of the field that differs between columns, and the damping, of each column.
+/// For each column, a bound on the part of the field that differs between columns, and the damping.
 /// Both are empty if columns differ in neither.
 struct FieldsAndDampings {
   std::vector<double> fields, dampings;
@@ -35,8 +35,8 @@ struct FieldsAndDampings {
     }
   }
 
-  /// Adds the columns of which no other one has a larger field and also a larger damping (for
-  /// `sign` -1, a smaller one).
+  /// Adds each column unless another one has both a larger field and a larger damping (if `sign` is
+  /// -1, a smaller one).
   void add_largest(double sign, std::set<std::size_t>& columns) const {
     auto const damping = [&](std::size_t column) { return sign * dampings[column]; };
     std::vector<std::size_t> by_field(fields.size());
@@ -73,17 +73,17 @@ std::optional<ColumnWarning> warning_of_columns(io::Scene const& one, io::Column
   if (!heats.empty())
     columns.insert(static_cast<std::size_t>(std::ranges::max_element(heats) - heats.begin()));
   if (auto const& [fields, dampings] = of_columns; !fields.empty()) {
-    // There may be as many such columns as replicas. So the largest field is first put together
-    // with the largest and with the smallest damping: mostly, not even these need a warning.
+    // add_largest may add all columns. It is not needed if the largest field needs no warning with
+    // the largest damping, and none with the smallest.
     auto worst =
         scene_of(static_cast<std::size_t>(std::ranges::max_element(fields) - fields.begin()));
     worst.thermal.reset();
-    for (double const damping : {std::ranges::max(dampings), std::ranges::min(dampings)}) {
+    auto const has_warning = [&](double damping) {
       worst.system.damping = damping;
-      if (!warning_of(worst)) continue;
+      return warning_of(worst).has_value();
+    };
+    if (has_warning(std::ranges::max(dampings)) || has_warning(std::ranges::min(dampings)))
       for (double const sign : {1.0, -1.0}) of_columns.add_largest(sign, columns);
-      break;
-    }
   } else if (heats.empty()) {
     columns.insert(0);
   }

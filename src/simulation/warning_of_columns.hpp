@@ -15,10 +15,10 @@ struct ColumnWarning {
   std::string text;
 };
 
-/// Returns the warning about dt of one of the replicas with these values, if one has any. Only
-/// those are asked whose steps may be the least accurate: the one with the most noise, and those
-/// with the largest fields and dampings. `one`: the scene of any replica. Does not throw for a dt
-/// that the scene refuses.
+/// Returns a replica's warning about dt, if one of the replicas with these values has any. Only
+/// replicas whose steps may be the least accurate are checked: the one with the most noise, and
+/// those with the largest fields and dampings. `one`: the scene of any replica. If the scene sets
+/// refuse_unstable, the warning is returned, too, and not thrown.
 std::optional<ColumnWarning> warning_of_columns(io::Scene const& one, io::Columns const& values,
                                                 Precision precision);
 
