@@ -122,8 +122,8 @@ def read_modes(path: str | os.PathLike, moments: Any = None) -> Modes | Bands:
     try:
         found.moments = np.broadcast_to(found.moments, spins.shape[:-1])
     except ValueError:
-        raise CayspinError(f"read_modes: moments of shape {moments.shape}; accepted: one that "
-                           f"broadcasts to {spins.shape[:-1]}") from None
+        raise CayspinError(f"read_modes: moments of shape {np.shape(found.moments)}; accepted: one "
+                           f"that broadcasts to {spins.shape[:-1]}") from None
     return Modes(found.frequency, found.decay, residual, found.shape, found.converged, cost,
                  found.time_unit, found.energy_unit, found.under_current, found.moments,
                  *curvatures, spins)

@@ -20,8 +20,8 @@ inline std::string as_start(std::filesystem::path const& file) {
                      io::toml_string(std::filesystem::absolute(file).string()));
 }
 
-/// Returns what is wrong with the spins of the file, if an error of a scene with as_start(file) is
-/// about them. The error itself names a key and an option that nobody typed.
+/// If an error of a scene with as_start(file) is about the spins of the file, returns what is wrong
+/// with them. The error itself also names a key and an option that nobody typed.
 inline std::optional<std::string> fault_of_start(io::SceneError const& error,
                                                  std::filesystem::path const& file) {
   std::string_view text = error.what();

@@ -117,7 +117,7 @@ Triple triple(Item const& item);
 /// Returns v times the power of two that takes `largest`, the largest component's magnitude, to
 /// [1, 2).
 inline Triple scaled_to_one(Triple const& v, double largest) {
-  constexpr std::uint64_t of_infinity = 2047;  // exponents as the bits of a number have them
+  constexpr std::uint64_t of_infinity = 2047;  // biased exponents
   auto const exponent = std::bit_cast<std::uint64_t>(largest) >> 52U;
   if (exponent > 0 && exponent < of_infinity - 1) {
     auto const scale = std::bit_cast<double>((of_infinity - 1 - exponent) << 52U);

@@ -49,9 +49,9 @@ void require_replaceable(fs::path const& path) {
         "this program or another one has it open; accepted: a closed file, or another name");
 }
 
-// Creates a file where the disk has space for its header, so that HDF5 does not find it full. HDF5
-// then truncates the file, and a file system may take milliseconds to free the space of a file.
-// Therefore the space is taken only if it may be short.
+// Creates a file, and checks that the disk has space for its header, so that HDF5 does not find the
+// disk full. Space is allocated for this check only if the disk may be full: HDF5 truncates the
+// file, and a file system may take milliseconds to free its space.
 void create_with_room(fs::path const& written, fs::path const& path) {
   int const file = ::open(written.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (file < 0) throw_failure(path, action, std::strerror(errno));

@@ -9,8 +9,8 @@
 
 namespace cayspin::inline v0_2::io {
 
-/// Returns true if the process may not write files of this size. Writing more than the limit raises
-/// a signal that ends the program.
+/// Returns true if files of this size are above the process's limit. Writing such a file would
+/// raise a signal that ends the program.
 bool passes_size_limit(std::uint64_t size);
 
 /// Returns true if the disk with this file is known to be far from full.

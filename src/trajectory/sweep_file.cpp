@@ -251,7 +251,8 @@ bool write_sweep(fs::path const& path, SweepInfo const& sweep, std::function<boo
   require_whole(sweep);
   QuietErrors const quiet;
   auto to = copies ? std::move(copies->file_) : nullptr;
-  // Copies that a killed sweep left have the ending of copies, too, and are replaced.
+  // With `copies`, the file has their ending even if there are none yet. So it replaces copies that
+  // a killed sweep left.
   if (!to)
     to = std::make_unique<SweepCopies::File>(path, copies ? ending_of_copies : ending_of_sweep);
   auto& file = to->file;

@@ -25,8 +25,8 @@ class ReplicaTeams {
   static constexpr std::int64_t most_shared_sites = threads_of_tile;
   /// The spins of a larger replica would not stay in the cache.
   static constexpr std::int64_t most_sites = 4096;
-  /// Up to this many sites, one team by itself is at least as fast as a launch for each stage.
-  static constexpr std::int64_t most_sites_of_only_team = 1024;
+  /// Up to this many sites, a single team is at least as fast as a launch for each stage.
+  static constexpr std::int64_t most_sites_of_single_team = 1024;
   /// Larger replicas suit a device that can run at most this many threads for each team: on a
   /// larger device, a launch for each stage is faster.
   static constexpr std::int64_t device_threads_per_team = 8192;
@@ -48,7 +48,7 @@ class ReplicaTeams {
     if (!DeviceLayout<std::int32_t>::reaches(layout, layout.sites())) return false;
     std::int64_t const sites = sites_of_replica(layout),
                        replicas = layout.nz / layout.replica_planes;
-    return sites <= most_sites_of_only_team ||
+    return sites <= most_sites_of_single_team ||
            (sites <= most_sites && replicas * device_threads_per_team >= exec.concurrency());
   }
 

@@ -90,8 +90,8 @@ auto Pencil<Scalar>::undamped_modes() const -> Modes {
   Matrix inner = factors.matrixL().solve(turning);
   inner = factors.matrixL().solve(inner.transpose().eval());  // transpose of L^-1 S L^-T; skew
   Eigen::SelfAdjointEigenSolver<ComplexMatrix> const found(-i_unit * inner);
-  // The round-off of all inverse rates is that of the largest one, which belongs to a zero mode if
-  // there is any.
+  // All inverse rates have the round-off of the largest one. If there is a zero mode, the largest
+  // one belongs to it, and the others would be inaccurate.
   Scalar const largest = found.eigenvalues().cwiseAbs().maxCoeff();
   if (!(largest * hessian.norm() < Scalar(1e5) * turning.norm())) return {};
   Modes modes;

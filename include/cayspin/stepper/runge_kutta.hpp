@@ -84,9 +84,10 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     visit(memory_.end());
   }
 
-  /// Returns true if `batch` can take steps of these spins: on a host space there are few of them,
-  /// and on a device few in each replica and at most four stages; they are not on a part of a
-  /// lattice, stages run as passes, and the generator does not change between steps.
+  /// Returns true if `batch` can take steps of these spins. The generator must not change between
+  /// steps, stages have to run as passes, and the spins must not be on a part of a lattice. On a
+  /// host space there have to be few spins. On a device each replica has to have few spins, and the
+  /// method at most four stages.
   template <class Exec, class Generator>
   bool takes_batches(Exec const& exec, Generator const& generator, Spins const& spins) const {
     return has_batches<Exec> && this->path() == Path::pass && this->lattice_.part == nullptr &&
