@@ -33,9 +33,17 @@ REGISTERS, WARPS = 65536, 64  # per multiprocessor
 SECTOR = 32  # bytes: the smallest transfer of the second-level cache
 
 SIZE = {"f64": 8, "f32": 4}
+WIDTH, HEIGHT, WALK = 32, 12, 32  # threads of a team and planes of its walk: TilesOfTeams
+# For two stages in one kernel: values that a site reads from memory or writes to it.
+PAIRS = {
+    "LieHeunInPairs": {"0+1": 6}, "Rkmk4InPairs": {"0+1": 12, "2+3": 15},
+    "StereographicHeunInPairs": {"0+1": 6}, "StereographicRk4InPairs": {"0+1": 9, "2+3": 12}}
 METHODS = {  # for each method of the counts, the case of bench_throughput
     "LieEuler": "Euler", "LieHeun": "Heun", "Rkmk4": "RKMK4",
-    "StereographicHeun": "Heun tangent", "StereographicRk4": "RKMK4 tangent"}
+    "StereographicHeun": "Heun tangent", "StereographicRk4": "RKMK4 tangent",
+    "LieHeunInPairs": "Heun in pairs", "Rkmk4InPairs": "RKMK4 in pairs",
+    "StereographicHeunInPairs": "Heun tangent in pairs",
+    "StereographicRk4InPairs": "RKMK4 tangent in pairs"}
 
 
 class Kernel:
@@ -44,16 +52,21 @@ class Kernel:
 
     def __init__(self, line):
         self.name, *numbers = line.split()
-        (self.total, self.arithmetic, self.loads, self.integer, self.stores, self.constants,
-         self.registers) = map(int, numbers)
+        (self.total, self.arithmetic, self.loads, self.shared, self.integer, self.stores,
+         self.constants, self.registers) = map(int, numbers)
         self.precision, self.method, self.stage = self.name.split("_")
-        self.loop = (self.arithmetic + self.loads + self.integer + self.stores + self.constants)
+        self.loop = (self.arithmetic + self.loads + self.shared + self.integer + self.stores +
+                     self.constants)
+
+    @property
+    def is_pair(self):
+        return self.stage in PAIRS.get(self.method, ())
 
     @property
     def words(self):
         """Values that a site reads from memory or writes to it. The 18 loads of the spins at its
         six neighbours are from caches."""
-        return self.loads - 18 + self.stores
+        return PAIRS[self.method][self.stage] if self.is_pair else self.loads - 18 + self.stores
 
     @property
     def memory_bytes(self):
@@ -62,9 +75,10 @@ class Kernel:
     @property
     def warps(self):
         """Warps that fit on a multiprocessor. A thread gets registers in multiples of 8, and
-        warps are allocated four at a time."""
+        warps are allocated four at a time, or a team at a time."""
         each = (self.registers + 7) // 8 * 8 * LANES
-        return min(WARPS, REGISTERS // each // 4 * 4)
+        together = WIDTH * HEIGHT // LANES if self.is_pair else 4
+        return min(WARPS // together, REGISTERS // each // together) * together
 
 
 def walk(edge):
@@ -72,8 +86,33 @@ def walk(edge):
     return min(max(edge**3 >> 19, 1), 8)
 
 
+def seconds_of_pair(kernel, bandwidth):
+    """Like seconds(), for two stages of a large lattice in one kernel. The threads at the border of
+    a tile, and those of the planes at the ends of a walk, repeat work of the tiles beside it."""
+    size, own = SIZE[kernel.precision], (WIDTH - 2) * (HEIGHT - 2)
+    repeats = WIDTH * HEIGHT / own * (WALK + 2) / WALK
+    once = (kernel.total - kernel.loop) / WALK
+    clocks = repeats / (PROCESSORS * CLOCK)
+    reads = kernel.words - kernel.stores
+    # The first stage also reads the spins around the border.
+    around = (WIDTH + 2) * (HEIGHT + 2) / (WIDTH * HEIGHT)
+    from_second = repeats * (reads - 3 + 3 * around) + kernel.stores
+    return {
+        "memory": kernel.memory_bytes / bandwidth,
+        "second cache": from_second * size / SECOND_CACHE,
+        "issue": (kernel.loop + once) / LANES / SCHEDULERS * clocks,
+        "arithmetic": kernel.arithmetic / ARITHMETIC[kernel.precision] * clocks,
+        "integers": (kernel.integer + once) / INTEGERS * clocks,
+        "first cache": ((kernel.loads + kernel.shared + kernel.stores) * size +
+                        6 * FIRST_CACHE / 32) / FIRST_CACHE * clocks,
+        "latency": LATENCY / (kernel.warps * LANES * PROCESSORS) * repeats,
+    }
+
+
 def seconds(kernel, bandwidth, edge):
     """Returns the seconds per site that each resource needs."""
+    if kernel.is_pair:
+        return seconds_of_pair(kernel, bandwidth)
     size, sites = SIZE[kernel.precision], walk(edge)
     once = (kernel.total - kernel.loop) / sites  # instructions outside a thread's loop, per site
     clocks = 1 / (PROCESSORS * CLOCK)
@@ -160,7 +199,7 @@ def print_replicas(kernels):
     print("\na step of many small lattices, in batches: ps a spin (what limits it)\n")
     print("| | " + " | ".join(SIZE) + " |")
     print("|---" * (1 + len(SIZE)) + "|")
-    found = slowest(kernels, seconds_in_batch)
+    found = slowest([kernel for kernel in kernels if not kernel.is_pair], seconds_in_batch)
     for method in METHODS.values():
         cells = [found[precision, method] for precision in SIZE if (precision, method) in found]
         if cells:

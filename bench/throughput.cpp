@@ -10,6 +10,8 @@
 #include "scene.hpp"
 #include "stream.hpp"
 
+#include <cayspin/stepper/paired_stages.hpp>
+
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -85,6 +87,13 @@ class Register {
     add<StereographicRungeKutta<Spins, Classical4>>("RKMK4 tangent", 39);
     add<cayspin::ProjectedHeun<Spins>>("Heun projected", 21);
     add<cayspin::ProjectedRk4<Spins>>("RK4 projected", 51);
+    if constexpr (!cayspin::detail::is_host_execution<Kokkos::DefaultExecutionSpace>) {
+      using cayspin::PairedStages;
+      add<PairedStages<cayspin::LieHeun<Spins>>>("Heun in pairs", 6);
+      add<PairedStages<cayspin::Rkmk4<Spins>>>("RKMK4 in pairs", 27);
+      add<PairedStages<StereographicRungeKutta<Spins, Heun>>>("Heun tangent in pairs", 6);
+      add<PairedStages<StereographicRungeKutta<Spins, Classical4>>>("RKMK4 tangent in pairs", 21);
+    }
   }
 
  private:

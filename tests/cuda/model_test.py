@@ -19,7 +19,7 @@ import model_gpu  # noqa: E402
 H100 = model_gpu.CARDS["H100"]
 # Instruction counts of geometric Euler in double precision, from a version whose loop divided and
 # branched.
-BRANCHING = model_gpu.Kernel("f64_LieEuler_0 577 126 21 388 3 39 45")
+BRANCHING = model_gpu.Kernel("f64_LieEuler_0 577 126 21 0 388 3 39 45")
 
 
 def share(kernels, precision, method):
@@ -36,13 +36,15 @@ class Model(unittest.TestCase):
         for kernel in self.kernels:
             key = kernel.precision, model_gpu.METHODS[kernel.method]
             words[key] = words.get(key, 0) + kernel.words
-        of_bench = {"Euler": 6, "Heun": 21, "RKMK4": 57, "Heun tangent": 15, "RKMK4 tangent": 39}
+        of_bench = {"Euler": 6, "Heun": 21, "RKMK4": 57, "Heun tangent": 15, "RKMK4 tangent": 39,
+                    "Heun in pairs": 6, "RKMK4 in pairs": 27, "Heun tangent in pairs": 6,
+                    "RKMK4 tangent in pairs": 21}
         for precision in ("f32", "f64"):
             for method, count in of_bench.items():
                 self.assertEqual(words[precision, method], count, method)
 
     def test_times_of_one_kernel(self):
-        kernel = model_gpu.Kernel("f64_LieEuler_0 240 80 21 40 3 16 56")
+        kernel = model_gpu.Kernel("f64_LieEuler_0 240 80 21 0 40 3 16 56")
         times = model_gpu.seconds(kernel, H100, 256)
         self.assertEqual(kernel.warps, 36)
         self.assertAlmostEqual(times["memory"] * 1e12, 48 / 3.35, places=6)
@@ -58,7 +60,7 @@ class Model(unittest.TestCase):
 
     def test_batches_of_small_lattices(self):
         # Instructions of integers: 60 for a site and 80 for a thread, which has one site
-        kernel = model_gpu.Kernel("f64_LieEuler_0 240 60 21 60 3 16 56")
+        kernel = model_gpu.Kernel("f64_LieEuler_0 240 60 21 0 60 3 16 56")
         with contextlib.redirect_stdout(io.StringIO()) as text:
             model_gpu.print_replicas([kernel])
         expected = 140 / 64 / 132 / 1.755e-3

@@ -15,13 +15,17 @@ namespace {
 /// A call that others can interrupt and continue, on a stack of its own.
 class Coroutine {
  public:
-  /// The first continue_now() calls body(pause). There, pause() returns to the caller of
-  /// continue_now(), and the next continue_now() returns from pause().
-  explicit Coroutine(std::function<void(std::function<void()> const&)> body)
-      : body_(std::move(body)), stack_(bytes) {
+  using Pause = std::function<void()>;
+  Coroutine() { stack_.reset(new char[bytes]); }
+
+  /// Prepares a call. The first continue_now() calls body(pause). There, pause() returns to the
+  /// caller of continue_now(), and the next continue_now() returns from pause().
+  void prepare(std::function<void(Pause const&)> body) {
+    body_ = std::move(body);
+    ended_ = false;
     getcontext(&here_);
-    here_.uc_stack.ss_sp = stack_.data();
-    here_.uc_stack.ss_size = stack_.size();
+    here_.uc_stack.ss_sp = stack_.get();
+    here_.uc_stack.ss_size = bytes;
     here_.uc_link = &caller_;
     makecontext(&here_, start, 0);
   }
@@ -33,7 +37,7 @@ class Coroutine {
   }
 
  private:
-  static constexpr std::size_t bytes = std::size_t{1} << 18;
+  static constexpr std::size_t bytes = std::size_t{1} << 17;
   static inline thread_local Coroutine* running = nullptr;
 
   static void start() {
@@ -42,26 +46,27 @@ class Coroutine {
     self.ended_ = true;
   }
 
-  std::function<void(std::function<void()> const&)> body_;
-  std::vector<char> stack_;
+  std::function<void(Pause const&)> body_;
+  std::unique_ptr<char[]> stack_;
   ucontext_t here_ = {}, caller_ = {};
-  bool ended_ = false;
+  bool ended_ = true;
 };
 
 }  // namespace
 
-void run_teams(int league_size, int team_size,
+void run_teams(int league_size, int team_size, std::size_t scratch_bytes,
                std::function<void(HostDeviceTeam const&)> const& body) {
+  std::vector<Coroutine> threads(static_cast<std::size_t>(team_size));
   for (int team = 0; team < league_size; ++team) {
-    std::vector<std::unique_ptr<Coroutine>> threads;
+    // Scratch memory has no defined content at first: here it is NaN.
+    std::vector<char> scratch(scratch_bytes, '\xff');
     for (int rank = 0; rank < team_size; ++rank)
-      threads.push_back(std::make_unique<Coroutine>([&, rank](auto const& pause) {
-        body(HostDeviceTeam(team, league_size, rank, team_size, pause));
-      }));
-    auto const has_ended = [](auto const& thread) { return thread->has_ended(); };
-    while (std::ranges::none_of(threads, has_ended))
-      for (auto const& thread : threads) thread->continue_now();
-    if (!std::ranges::all_of(threads, has_ended))
+      threads[static_cast<std::size_t>(rank)].prepare([&, rank](Coroutine::Pause const& pause) {
+        body(HostDeviceTeam(team, league_size, rank, team_size, scratch, pause));
+      });
+    while (std::ranges::none_of(threads, &Coroutine::has_ended))
+      for (auto& thread : threads) thread.continue_now();
+    if (!std::ranges::all_of(threads, &Coroutine::has_ended))
       Kokkos::abort("HostDevice: a thread of a team ends before a barrier of the others");
   }
 }

@@ -123,6 +123,15 @@ struct StageDataFlow {
   static constexpr bool stores_increment =
       !last && detail::stores_increment<Tableau, Update>(Stage);
   static constexpr int carried = last ? carried_fields<Update>() : 0;
+  /// The last stage that reads this stage's increment, or, by a method that recovers increments,
+  /// the spins of the next stage in its place. This stage itself if none does.
+  static constexpr int last_reader = [] {
+    if (recovers) return Stage + 2 < stages ? stages - 1 : Stage;
+    int reader = Stage;
+    for (int later = Stage + 1; later < stages; ++later)
+      if (detail::reads_increment<Tableau, Update>(later, Stage)) reader = later;
+    return reader;
+  }();
   /// Returns true if increment j is read or, by a method that recovers increments, the spins of
   /// stage j + 1 in its place.
   static constexpr bool reads_increment(int j) {

@@ -122,18 +122,8 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     if (count % steps != 0) step(exec, generator, spins, t, dt);
   }
 
- private:
+ protected:
   using Base::stages, Base::labels_, Base::isotropy_, Base::memory_;
-
-  template <class Exec>
-  void update_ghosts(Exec const& exec, Spins const& spins) const {
-    memory_.with_carried([&](auto const&... carried) {
-      detail::update_ghosts(exec, this->lattice_, spins, carried...);
-    });
-  }
-
-  /// Returns true if a step swaps the memory of the spins.
-  bool exchanges() const { return stages == 1 || this->path() == Path::sweep; }
 
   template <int Stage, class Prepared>
   auto kernel(Prepared prepared, double dt) const {
@@ -147,6 +137,17 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
   auto fields(Spins const& spins) const {
     return memory_.template arrays<detail::StageDataFlow<Tableau, Update, Stage>>(spins);
   }
+
+ private:
+  template <class Exec>
+  void update_ghosts(Exec const& exec, Spins const& spins) const {
+    memory_.with_carried([&](auto const&... carried) {
+      detail::update_ghosts(exec, this->lattice_, spins, carried...);
+    });
+  }
+
+  /// Returns true if a step swaps the memory of the spins.
+  bool exchanges() const { return stages == 1 || this->path() == Path::sweep; }
 
   template <int Stage, class Exec, class Generator>
   void stages_from(Exec const& exec, Generator const& generator, Spins const& spins, double t,

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/stage/pair.hpp>
+#include <cayspin/stepper/runge_kutta.hpp>
+
+#include <type_traits>
+#include <utility>
+
+namespace cayspin::inline v0_2 {
+
+/// A chain of two or four stages, for example PairedStages<Rkmk4<Spins>>, that takes two stages at
+/// a time in one pass over the lattice if the spins are on a device: the spins between the two stay
+/// in the scratch memory of the device's teams. A step then moves less memory, and the result is
+/// bitwise identical. On host spaces, for which RungeKutta has sweeps, on narrow lattices and on
+/// parts, and for generators that need all spins of a stage beforehand, it takes the steps of
+/// Stepper.
+template <class Stepper>
+  requires requires {
+    typename Stepper::tableau_type;
+    typename Stepper::update_type;
+  }
+class PairedStages
+    : public RungeKutta<typename Stepper::spins_type, typename Stepper::tableau_type,
+                        typename Stepper::update_type, typename Stepper::isotropy_type> {
+  using Spins = typename Stepper::spins_type;
+  using Tableau = typename Stepper::tableau_type;
+  using Update = typename Stepper::update_type;
+  using Base = RungeKutta<Spins, Tableau, Update, typename Stepper::isotropy_type>;
+  static_assert((Tableau::stages == 2 || Tableau::stages == 4) && detail::is_chain<Tableau>(),
+                "PairedStages belongs to chains of two or four stages, such as LieHeun and Rkmk4.");
+
+ public:
+  using typename Base::Real;
+
+  explicit PairedStages(Spins const& like, typename Stepper::isotropy_type isotropy = {})
+      : Base("PairedStages", like, isotropy) {}
+
+  /// Like RungeKutta::step.
+  template <class Exec, class Generator>
+  void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    if constexpr (!detail::is_host_execution<Exec>) {
+      using Isotropy = typename Stepper::isotropy_type;
+      if (detail::has_pairs<Exec, Real>(spins.layout()) &&
+          detail::stages_need_only_time<Isotropy>(generator, exec, spins)) {
+        auto const region = this->begin_step(exec, spins);
+        this->require_other_memory(spins, memory_.end());
+        if (pairs_from<0>(exec, generator, spins, t, dt)) return swap(spins, memory_.end());
+      }
+    }
+    Base::step(exec, generator, spins, t, dt);
+  }
+
+ private:
+  using Base::memory_;
+
+  template <int Stage, class Exec, class Generator>
+  auto stage(Exec const& exec, Generator const& generator, Spins const& spins, double t,
+             double dt) {
+    auto fields = this->template fields<Stage>(spins);
+    if constexpr (Stage + 1 == Tableau::stages) fields.next = memory_.end().output(false);
+    return detail::StageOnSite(
+        this->template kernel<Stage>(detail::prepare_stage<typename Stepper::isotropy_type>(
+                                         generator, exec, spins, t + Tableau::c[Stage] * dt),
+                                     dt),
+        fields);
+  }
+
+  template <int Stage, class Exec, class Generator>
+  bool pairs_from(Exec const& exec, Generator const& generator, Spins const& spins, double t,
+                  double dt) {
+    if constexpr (Stage < Tableau::stages) {
+      bool const ran = detail::run_pair(exec, this->labels_[Stage + 1], spins.layout(),
+                                        stage<Stage>(exec, generator, spins, t, dt),
+                                        stage<Stage + 1>(exec, generator, spins, t, dt));
+      return ran && pairs_from<Stage + 2>(exec, generator, spins, t, dt);
+    }
+    return true;
+  }
+};
+
+}  // namespace cayspin::inline v0_2
