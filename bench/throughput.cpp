@@ -55,6 +55,22 @@ void run_probe(benchmark::State& state, Method method, double words) {
   scene::report(state, lattice.sites(), words, 0);
 }
 
+// Steps of one stage in pairs, of which integrate() would take batches.
+template <class Stepper>
+void run_two_steps(benchmark::State& state, cayspin::Lattice const& lattice) {
+  auto spins = scene::random<typename Stepper::spins_type>(lattice);
+  auto const generator = scene::Default::generator(lattice);
+  Stepper stepper(spins);
+  Kokkos::DefaultExecutionSpace const exec;
+  auto const take = [&] {
+    stepper.batch(exec, generator, spins, 0, scene::dt, 2);
+    exec.fence();
+  };
+  take();
+  for (auto _ : state) take();
+  scene::report(state, 2 * lattice.sites(), 3, scene::work_bytes(stepper));
+}
+
 constexpr int edges[] = {5, 10, 16, 24, 32, 48, 64, 96, 128, 192, 256, 292};
 
 template <class Real>
@@ -89,6 +105,10 @@ class Register {
     add<cayspin::ProjectedRk4<Spins>>("RK4 projected", 51);
     if constexpr (!cayspin::detail::is_host_execution<Kokkos::DefaultExecutionSpace>) {
       using cayspin::PairedStages;
+      for (int const n : {64, 128, 256})
+        scene::add(prefix_ + "Euler in pairs/" + std::to_string(n), [n](benchmark::State& state) {
+          run_two_steps<PairedStages<cayspin::LieEuler<Spins>>>(state, scene::cube(n).lattice);
+        });
       add<PairedStages<cayspin::LieHeun<Spins>>>("Heun in pairs", 6);
       add<PairedStages<cayspin::Rkmk4<Spins>>>("RKMK4 in pairs", 27);
       add<PairedStages<StereographicRungeKutta<Spins, Heun>>>("Heun tangent in pairs", 6);

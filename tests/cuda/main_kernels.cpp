@@ -16,6 +16,7 @@ struct MainKernels {
   Rkmk4<S> rkmk4;
   StereographicRungeKutta<S, tableau::Heun> chart_heun;
   StereographicRungeKutta<S, tableau::Classical4> chart_rk4;
+  PairedStages<LieEuler<S>> euler_in_pairs;
   PairedStages<LieHeun<S>> heun_in_pairs;
   PairedStages<Rkmk4<S>> rkmk4_in_pairs;
   PairedStages<StereographicRungeKutta<S, tableau::Heun>> chart_heun_in_pairs;
@@ -27,6 +28,7 @@ struct MainKernels {
     };
     each(euler, heun, rkmk4, chart_heun, chart_rk4, heun_in_pairs, rkmk4_in_pairs,
          chart_heun_in_pairs, chart_rk4_in_pairs);
+    euler_in_pairs.batch(Exec(), generator, spins, 0, 0.1, 2);
   }
 };
 

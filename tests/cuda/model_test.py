@@ -37,7 +37,7 @@ class Model(unittest.TestCase):
             key = kernel.precision, model_gpu.METHODS[kernel.method]
             words[key] = words.get(key, 0) + kernel.words
         of_bench = {"Euler": 6, "Heun": 21, "RKMK4": 57, "Heun tangent": 15, "RKMK4 tangent": 39,
-                    "Heun in pairs": 6, "RKMK4 in pairs": 27, "Heun tangent in pairs": 6,
+                    "Euler in pairs": 6, "Heun in pairs": 6, "RKMK4 in pairs": 27, "Heun tangent in pairs": 6,
                     "RKMK4 tangent in pairs": 21}
         for precision in ("f32", "f64"):
             for method, count in of_bench.items():

@@ -45,10 +45,10 @@ def kernel_name(symbol):
                           stdout=subprocess.PIPE).stdout
     stage = r"RungeKuttaStage<cayspin::v\w+::tableau::(\w+), cayspin::v\w+::update::(\w+)"
     if found := re.search(r"StagePairOnTiles<int, cayspin::v\w+::detail::" + stage +
-                          r".*?, (\d+), cayspin.*?, (float|double)>, cayspin::v\w+::detail::"
-                          r"RungeKuttaStage", name):
-        first = int(found[3])
-        return f"{PRECISIONS[found[4]]}_{METHODS[found[1], found[2]]}InPairs_{first}+{first + 1}"
+                          r".*?, (\d+), cayspin.*?, (float|double)>, cayspin::v\w+::detail::" +
+                          stage + r".*?, (\d+), cayspin", name):
+        method = METHODS[found[1], found[2]]
+        return f"{PRECISIONS[found[4]]}_{method}InPairs_{found[3]}+{found[7]}"
     found = re.search(r"TileLoop<int, .*?OnDeviceSite<(float|double), .*?RungeKuttaStage<"
                       r"cayspin::v\w+::tableau::(\w+), cayspin::v\w+::update::(\w+).*?, (\d+), "
                       r"cayspin", name)

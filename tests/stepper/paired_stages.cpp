@@ -81,6 +81,34 @@ TYPED_TEST(Pairs, HaveTheBitsOfPasses) {
     this->expect_same_of_each(on, this->generator_on(on), true);
 }
 
+// With one stage, pairs are steps, in batches.
+TYPED_TEST(Pairs, OfStepsHaveTheBitsOfSteps) {
+  using Spins = typename TypeParam::Spins;
+  constexpr bool on_device = !detail::is_host_execution<typename TypeParam::Exec>;
+  for (auto const& on : {lattice_of({61, 11, 9}, {periodic, open, periodic}),
+                         lattice_of({33, 21, 17}, {open, periodic, open}),
+                         lattice_of({31, 12, 12}, {periodic, periodic, periodic}).with_replicas(4)})
+    for (int const steps : {4, 5}) {
+      SCOPED_TRACE(::testing::PrintToString(on.shape) + ' ' + std::to_string(steps));
+      LandauLifshitz const generator(
+          EffectiveField(Exchange(on, 0.8), BulkDmi(on, 0.4), UniaxialAnisotropy(0.7, {1, 2, -2})),
+          0.1);
+      Spins const like("like", on);
+      auto spins = spins_of<Spins>(on, random_directions(on.sites(), 7));
+      LieEuler<Spins> plain(like);
+      auto const expected = numbers_of(this->after_steps(plain, generator, on, steps));
+      PairedStages<LieEuler<Spins>> stepper(like);
+      if (on_device) {
+        EXPECT_TRUE(stepper.takes_batches(this->exec, generator, spins));
+        EXPECT_FALSE(plain.takes_batches(this->exec, generator, spins));
+      }
+      auto const* const before = spins.array().data;
+      integrate(this->exec, stepper, generator, spins, {.begin = 0.25, .dt = 0.05, .steps = steps});
+      EXPECT_EQ(numbers_of(spins), expected);
+      EXPECT_EQ(spins.array().data, before);
+    }
+}
+
 TYPED_TEST(Pairs, AreNotTakenOnNarrowLattices) {
   for (auto const& on : {lattice_of({29, 10, 3}, {open, open, open}),
                          lattice_of({30, 9, 3}, {periodic, periodic, periodic})})

@@ -14,11 +14,11 @@
 #include <string>
 #include <type_traits>
 
-// Two stages of a Runge-Kutta step in one pass over the lattice, on a device. The threads of a team
-// walk along z. In each plane they compute the first stage, also at the border of their tile, and
-// write its spins to scratch memory; one plane behind, they compute the second stage from there.
-// What a site's second stage needs of its first stage stays in registers. The results have the bits
-// of two passes.
+// Two stages of a Runge-Kutta step, or two steps of one stage, in one pass over the lattice, on a
+// device. The threads of a team walk along z. In each plane they compute the first stage, also at
+// the border of their tile, and write its spins to scratch memory; one plane behind, they compute
+// the second stage from there. What a site's second stage needs of its first stage stays in
+// registers. The results have the bits of two passes.
 namespace cayspin::inline v0_2::detail {
 
 /// The arrays of the first stage of a pair.
@@ -48,25 +48,28 @@ struct ArraysOfSecond : DeviceArrays<Flow, Real> {
   Increments increments;
 };
 
+/// Planes of spins in the scratch memory of a team: three that are read, and one that is written.
+inline constexpr std::int32_t scratch_planes = 4;
+template <class Real>
+inline constexpr std::size_t scratch_bytes_of_pairs =
+    sizeof(Real) * scratch_planes * 3 * TilesOfTeams::threads;
+
 /// Loop of a team over its tile. `First` and `Second` are two consecutive RungeKuttaStages.
 template <class Index, class First, class Second>
 struct StagePairOnTiles {
   using Real = typename First::value_type;
   using Tiles = TilesOfTeams;
-  static constexpr std::int32_t planes = 4;  // three that are read, and one that is written
-  static constexpr std::int32_t plane = 3 * Tiles::threads;
 
   StageOnSite<First> first;
   StageOnSite<Second> second;
   DeviceLayout<Index> layout;
   Tiles tiles;
 
-  static constexpr std::size_t scratch_bytes() { return sizeof(Real) * planes * plane; }
-
   template <class Team>
   KOKKOS_FUNCTION void operator()(Team const& team) const {
     auto const thread = static_cast<std::int32_t>(team.team_rank());
-    Real* const here = static_cast<Real*>(team.team_scratch(0).get_shmem(scratch_bytes())) + thread;
+    constexpr std::size_t bytes = scratch_bytes_of_pairs<Real>;
+    Real* const here = static_cast<Real*>(team.team_scratch(0).get_shmem(bytes)) + thread;
     auto const column = tiles.column(static_cast<std::int32_t>(team.league_rank()), thread);
     KeptVector<Real> before, now;
     for (std::int32_t z = column.begin - 1; z <= column.end; ++z) {
@@ -88,7 +91,7 @@ struct StagePairOnTiles {
   using Site = TileSite<Real, Index>;
 
   KOKKOS_FORCEINLINE_FUNCTION static Real* slot(Real* here, std::int32_t z) {
-    return here + (z + planes) % planes * plane;
+    return here + (z + scratch_planes) % scratch_planes * (3 * Tiles::threads);
   }
 
   KOKKOS_FORCEINLINE_FUNCTION void run_first(Site const& site, bool own, Real* to,
@@ -123,7 +126,7 @@ bool has_pairs(RowLayout const& layout) {
   else
     return layout.part == nullptr && layout.nx >= Tiles::width - 2 &&
            layout.ny >= Tiles::height - 2 &&
-           sizeof(Real) * 4 * 3 * Tiles::threads <=
+           scratch_bytes_of_pairs<Real> <=
                static_cast<std::size_t>(Kokkos::TeamPolicy<Exec>::scratch_size_max(0));
 }
 
@@ -137,7 +140,7 @@ bool run_pair(Exec const& exec, std::string const& label, RowLayout const& layou
     using Pair = StagePairOnTiles<Index, First, Second>;
     Pair const pair{first, second, DeviceLayout<Index>(layout), tiles};
     Kokkos::TeamPolicy<Exec> policy(exec, static_cast<int>(tiles.count()), TilesOfTeams::threads);
-    policy.set_scratch_size(0, Kokkos::PerTeam(static_cast<int>(Pair::scratch_bytes())));
+    policy.set_scratch_size(0, Kokkos::PerTeam(scratch_bytes_of_pairs<typename Pair::Real>));
     if (policy.team_size_max(pair, Kokkos::ParallelForTag()) < TilesOfTeams::threads) return false;
     Kokkos::parallel_for(label, policy, pair);
     return true;
