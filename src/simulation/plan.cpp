@@ -56,6 +56,8 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
   if (scene.output.terms && scene.system.kind == io::SystemKind::llg)
     for (auto const& term : single_terms(scene))
       memory.field += memory_of_terms<Real>(term.second, lattice);
+  if (is_thermal(scene) && io::has_noise_of_sites(scene) && !scene.columns)
+    memory.field += field_bytes<Real>(lattice, 1);
   if (scene.output.regions) memory.field += 2 * field_bytes<Real>(lattice, 1);
   if (scene.lattice.follow) memory.field += memory.spins + field_bytes<Real>(lattice, 1);
   if (has_slow_field(scene)) {

@@ -21,7 +21,8 @@ std::map<void const*, std::int64_t> of_terms;
 
 void allocate(Kokkos_Profiling_SpaceHandle, char const* label, void const* data,
               std::uint64_t bytes) {
-  for (std::string_view const prefix : {"cayspin::FieldInPass", "cayspin::SiteDependentExchange"})
+  for (std::string_view const prefix :
+       {"cayspin::FieldInPass", "cayspin::SiteDependentExchange", "cayspin::RunNoise"})
     if (std::string_view(label).starts_with(prefix))
       of_terms[data] = static_cast<std::int64_t>(bytes);
 }
@@ -69,6 +70,10 @@ TEST(MemoryOfTerms, IsWhatTheTermsAllocate) {
        "exchange = 1\ninterlayer = [{ between = [0, 1], J = 0.1 }]", 4},
       {"0.1", "regions = 'x < 0.5 ? 0 : 1'",
        "exchange = 1\nexchange_between = [{ between = [0, 1], factor = 0.5 }]"},
+      {"0.1", "", "exchange = 1\n[thermal]\ntemperature = 'x'\nseed = 1"},
+      {"'0.1 + x'", "", "exchange = 1\n[thermal]\ntemperature = 0.1\nseed = 1"},
+      {"0.1", "moments = '1 + x'", "exchange = 1\n[thermal]\ntemperature = 0.1\nseed = 1"},
+      {"0.1", "frozen = 'x < 0.1'", "exchange = 1\n[thermal]\ntemperature = 0.1\nseed = 1"},
   };
   for (auto const precision : precisions)
     for (auto const& one : cases) {
