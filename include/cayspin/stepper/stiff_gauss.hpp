@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -157,7 +158,13 @@ class StiffGauss : public detail::StepperBase<Spins> {
     contraction_ = 1;
   }
 
-  void make_solver() { solver_ = Solver(name, this->lattice_, exchange_.couplings); }
+  void make_solver() {
+    if (solver_couplings_ == exchange_.couplings) return;
+    solver_couplings_.reset();
+    solver_ = Solver();  // before the new one is made, so that there is memory for one only
+    solver_ = Solver(name, this->lattice_, exchange_.couplings);
+    solver_couplings_ = exchange_.couplings;
+  }
 
   /// Restores the spins after a failed step, and forgets the previous steps.
   void give_back(Spins& spins) {
@@ -311,6 +318,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   std::array<Solution, count> solution_;
   History history_;
   Solver solver_;
+  std::optional<std::array<double, 3>> solver_couplings_;
   detail::MeasuredExchange exchange_;
   double local_ = 0;
   double last_dt_ = 0;
