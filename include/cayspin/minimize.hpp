@@ -38,8 +38,9 @@ class Minimizer {
 
  public:
   /// Number of allocated fields with three numbers per site, counting the memory of the multigrid
-  /// levels as fields, too.
-  static constexpr int work_fields = 24;
+  /// levels as fields, too. The levels are always in single precision, and count half if Real is
+  /// double.
+  static constexpr int work_fields = sizeof(Real) == 8 ? 24 : 26;
   /// Smallest accepted bound on the torque: the squares of much smaller torques would underflow.
   static constexpr double least_bound = 1e-150;
 

@@ -66,7 +66,7 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
   }
   // Memory of the search for a descent direction, which runs when the torque is small.
   if (scene.integrator.until_torque && lattice.part == nullptr)
-    memory.work += (1 + Minimizer<SpinField<double>>::work_fields) * memory.spins;
+    memory.work += (1 + Minimizer<SpinField<Real>>::work_fields) * memory.spins;
   // A rank reads its part of a start a few planes at a time, but an OVF file as a whole. The first
   // rank writes the files.
   auto const& all = whole(lattice);

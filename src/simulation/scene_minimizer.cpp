@@ -74,7 +74,9 @@ Plan make_plan_to_relax(io::Scene const& scene, Precision precision) {
   plan.frames *= states;
   auto const once = static_cast<double>(position_bytes(scene.lattice));
   plan.file_bytes = once + static_cast<double>(states) * (plan.file_bytes - once);
-  plan.memory.work = plan.memory.spins * Minimizer<SpinField<double>>::work_fields;
+  plan.memory.work = plan.memory.spins * (precision == Precision::double_precision
+                                              ? Minimizer<SpinField<double>>::work_fields
+                                              : Minimizer<SpinField<float>>::work_fields);
   return plan;
 }
 

@@ -244,6 +244,9 @@ TEST_F(Relax, IsChecked) {
   EXPECT_TRUE(json.at("stable_dt").is_null());
   EXPECT_TRUE(json.at("evaluations_per_step").is_null());
   EXPECT_EQ(json.at("work_bytes"), 24 * json.at("spins_bytes").get<std::int64_t>());
+  auto const single = nlohmann::json::parse(
+      output_of({"check", file, "--json", "--set", list, "--precision", "single"}));
+  EXPECT_EQ(single.at("work_bytes"), 26 * single.at("spins_bytes").get<std::int64_t>());
   double const frames = 3 * 12000 * 3 * 8;
   EXPECT_GT(json.at("file_bytes").get<double>(), frames);
   EXPECT_LT(json.at("file_bytes").get<double>(), frames + 3 * 200);
