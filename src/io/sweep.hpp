@@ -84,6 +84,9 @@ class SweepCopies {
   /// Removes the file unless write_sweep() has taken it.
   ~SweepCopies();
 
+  /// Removes the file that a killed sweep left. The sweep's own file has to be there.
+  void remove_left() const;
+
   /// Copies the run's own file, which has just been written. Does nothing if the file is large, if
   /// the disk is nearly full, or after an error: write_sweep() then copies the run.
   void add(std::int64_t run);

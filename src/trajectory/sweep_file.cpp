@@ -228,6 +228,12 @@ class SweepCopies::File {
 SweepCopies::SweepCopies(fs::path file) : path_(std::move(file)) {}
 SweepCopies::~SweepCopies() = default;
 
+void SweepCopies::remove_left() const {
+  std::error_code error;
+  auto const target = fs::canonical(path_, error);
+  if (!error) fs::remove(target.string() + ending_of_copies, error);
+}
+
 void SweepCopies::add(std::int64_t run) {
   if (failed_) return;
   QuietErrors const quiet;

@@ -122,6 +122,16 @@ TEST_F(DamagedSweeps, TakeOverCopiesOfRuns) {
   EXPECT_FALSE(fs::exists(copies_));
 }
 
+TEST_F(DamagedSweeps, RemoveCopiesThatAKillLeft) {
+  write_bytes(copies_, "left by a kill");
+  SweepCopies(folder_ / "other.h5").remove_left();
+  EXPECT_TRUE(fs::exists(copies_));
+  ASSERT_TRUE(write_sweep(path_, sweep_));
+  SweepCopies(path_).remove_left();
+  EXPECT_FALSE(fs::exists(copies_));
+  EXPECT_TRUE(fs::exists(path_));
+}
+
 TEST_F(DamagedSweeps, LeaveNoCopiesThatNoSweepTakes) {
   ASSERT_TRUE(has_plenty_of_room());
   {

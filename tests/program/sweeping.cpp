@@ -292,8 +292,10 @@ TEST_F(Sweeping, SaysThatAFolderCannotBeLocked) {
 
 TEST_F(Sweeping, OnlyOneProcessHasAFile) {
   auto const all = sweep_into("busy.h5", {"--jobs", "1", "--over", "integrator.steps=1000000000"});
+  write("busy.h5.runs.partial", "left by a kill");
   auto const first = begin(all);
   EXPECT_TRUE(eventually([&] { return fs::exists(io::swept_run_file(in_folder("busy.h5"), 0)); }));
+  EXPECT_FALSE(exists("busy.h5.runs.partial"));
   expect_refused(all, "another sweep is writing it");
   expect_refused(joined(all, {"--overwrite"}), "another sweep is writing it");
   EXPECT_EQ(end(first, SIGTERM), 130);

@@ -94,6 +94,7 @@ void Session::open(bool is_new) {
     }
   }
   write();
+  copies_.remove_left();
 }
 
 void Session::require_same_sweep() const {
