@@ -271,6 +271,12 @@ TEST_F(Sweeping, AnotherSweepInTheFileIsRefused) {
   expect_refused(arguments("all.h5", {"--over", "output.every=1,2"}), "it has a sweep over");
   expect_refused(arguments("all.h5", {"--precision", "single"}), "in double precision");
   expect_refused(arguments("all.h5", set("integrator.dt=0.01")), "of another scene");
+  std::string const many = "integrator.steps=1,2,3,4,5,6,7,8,9,10,11,12";
+  output_of(sweep_into("many.h5", {"--quiet", "--over", many}));
+  expect_refused(sweep_into("many.h5", {"--over", many + ",13"}),
+                 "it has a sweep over integrator.steps=1,2,3,..,12 (12 values); accepted: ");
+  expect_refused(sweep_into("many.h5", {"--over", "integrator.steps=1,2,3,4,5,6,7,8,9,10,12"}),
+                 "integrator.steps=1,2,3,..,12 (12 values)");
   write("text.h5", "precious");
   expect_refused(arguments("text.h5"), "text.h5");
   run(chain_scene());

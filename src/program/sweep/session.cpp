@@ -28,16 +28,25 @@ bool has_ended(io::SweptRun const& run) {
   return run.status == Status::done || run.status == Status::numbers_failed;
 }
 
+// Returns the values of a key for a message, the first and the last ones of many.
+std::string some_values(std::vector<std::string> const& values) {
+  if (values.size() <= 10) return fmt::format("{}", fmt::join(values, ","));
+  return fmt::format("{},..,{} ({} values)", fmt::join(values.begin(), values.begin() + 3, ","),
+                     values.back(), values.size());
+}
+
 // Describes the sweep in the file, `before`, by what differs from this sweep, `now`. Returns an
 // empty text if they are equal.
 std::string difference(io::SweepHeader const& now, io::SweepHeader const& before) {
-  auto const keys = [](io::SweepHeader const& header) {
-    std::string text;
-    for (auto const& key : header.keys)
-      text += fmt::format("{}{}={}", text.empty() ? "" : " ", key.key, fmt::join(key.values, ","));
-    return text;
+  auto const are_equal = [](io::SweptKey const& a, io::SweptKey const& b) {
+    return a.key == b.key && a.values == b.values;
   };
-  if (keys(now) != keys(before)) return fmt::format("over {}", keys(before));
+  if (!std::ranges::equal(now.keys, before.keys, are_equal)) {
+    std::string keys;
+    for (auto const& key : before.keys)
+      keys += fmt::format("{}{}={}", keys.empty() ? "" : " ", key.key, some_values(key.values));
+    return fmt::format("over {}", keys);
+  }
   if (now.precision != before.precision) return fmt::format("in {} precision", before.precision);
   if (now.space != before.space) return fmt::format("in the space {}", before.space);
   if (now.scene_text != before.scene_text) return "of another scene";
