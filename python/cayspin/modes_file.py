@@ -45,6 +45,9 @@ class FileOfModes:
             self.spins = file["spins"][:].astype(np.float64)
             parts = file["mode"][:]
             self.shape = parts[..., 0] + 1j * parts[..., 1]
+            if self.shape.shape[1:] != self.spins.shape:
+                raise CayspinError(f"{path}: spins of shape {self.spins.shape} and modes of shape "
+                                   f"{self.shape.shape}; accepted: modes (mode, ..) of these spins")
             self.frequency, self.decay = file["frequency"][:], file["decay"][:]
             self.converged = bool(file.attrs["converged"])
             self.time_unit, self.energy_unit = 1.0, None
@@ -122,8 +125,8 @@ def read_modes(path: str | os.PathLike, moments: Any = None) -> Modes | Bands:
     try:
         found.moments = np.broadcast_to(found.moments, spins.shape[:-1])
     except ValueError:
-        raise CayspinError(f"read_modes: moments of shape {np.shape(found.moments)}; accepted: one "
-                           f"that broadcasts to {spins.shape[:-1]}") from None
+        raise CayspinError(f"read_modes: moments of shape {np.shape(found.moments)}; accepted: "
+                           f"one that broadcasts to {spins.shape[:-1]}") from None
     return Modes(found.frequency, found.decay, residual, found.shape, found.converged, cost,
                  found.time_unit, found.energy_unit, found.under_current, found.moments,
                  *curvatures, spins)

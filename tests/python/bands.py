@@ -172,6 +172,26 @@ class OfModes(PackageTest):
                      lambda: cayspin.linear_structure_factor(name, 0.1, [0.0, 1.0])):
             self.assert_refused(cayspin.CayspinError, "cannot be read: ", call)
 
+    # The moments of the scene are those of its six sites.
+    def test_files_with_spins_of_another_shape(self):
+        file = self.run_program(chain(lattice={**SHORT["lattice"], "moments": "1 + x"}), "--count",
+                                "1", command="modes")
+        name, spins = file.filename, file["spins"][:]
+        file.close()
+        with h5py.File(name, "r+") as damaged:
+            del damaged["spins"]
+            damaged["spins"] = spins[..., :5, :]
+        for call in (lambda: cayspin.read_modes(name),
+                     lambda: cayspin.linear_structure_factor(name, 0.1, [0.0, 1.0])):
+            self.assert_refused(cayspin.CayspinError, "spins of shape (1, 1, 5, 3) and modes of "
+                                "shape (1, 1, 1, 6, 3); accepted: ", call)
+        with h5py.File(name, "r+") as damaged:
+            modes = damaged["mode"][:]
+            del damaged["mode"]
+            damaged["mode"] = modes[..., :5, :, :]
+        self.assert_refused(cayspin.CayspinError, "read_modes: moments of shape (1, 1, 6); "
+                            "accepted: one that broadcasts to (1, 1, 5)", cayspin.read_modes, name)
+
     def test_other_files(self):
         run = self.run_program(chain(**SHORT), "--set", "integrator.steps=1")
         self.assert_refused(cayspin.CayspinError, "no modes; accepted: a file of cayspin modes",
