@@ -64,6 +64,7 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
     memory.work += work_fields_of_multirate(scene, variant) * memory.spins;
     memory.field += memory.spins;
   }
+  if (scene.integrator.energy_control) memory.work += memory.spins;
   // Memory of the search for a descent direction, which runs when the torque is small.
   if (scene.integrator.until_torque && lattice.part == nullptr)
     memory.work += (1 + Minimizer<SpinField<Real>>::work_fields) * memory.spins;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The memory that a plan expects of a field's terms is the memory that they allocate.
+#include "../support/held_memory.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/plan.hpp"
 
@@ -11,6 +12,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace cayspin::simulation::test {
@@ -95,6 +97,26 @@ TEST(MemoryOfTerms, IsWhatTheTermsAllocate) {
       EXPECT_LE(allocated, plan.memory.field + scalar / 2);
       EXPECT_GE(allocated + one.unused * scalar, plan.memory.field);
     }
+}
+
+TEST(MemoryOfTerms, IsBesideThatOfTheEnergyControl) {
+  for (auto const precision : precisions) {
+    auto const work_of = [&](std::string const& control) {
+      auto const scene = scene_of(
+          "system = { kind = 'llg', damping = 0 }\nlattice = { shape = [40, 16, 8] }\n"
+          "field = { exchange = 1 }\ninitial = { uniform = [0, 0, 1] }\n"
+          "integrator = { method = 'rkmk4', dt = 0.01, steps = 1, energy_control = " +
+          control + " }\n");
+      cayspin::test::HeldMemory const held("cayspin::EnergyControl");
+      auto const run = SceneRun::open(scene, {.precision = precision});
+      return std::pair(static_cast<double>(make_plan(scene, precision).memory.work), held.most());
+    };
+    auto const [without, nothing] = work_of("false");
+    auto const [with, held] = work_of("true");
+    EXPECT_EQ(nothing, 0);
+    EXPECT_GT(held, 0);
+    EXPECT_EQ(with - without, held);
+  }
 }
 
 }  // namespace
