@@ -12,7 +12,7 @@ TYPED_TEST_SUITE(MinimizerMemory, Backends, BackendName);
 
 TYPED_TEST(MinimizerMemory, IsThatOfTheWorkFields) {
   using Spins = typename TestFixture::Spins;
-  auto const lattice = Lattice::cubic(48, 48, 48);
+  auto const lattice = Lattice::cubic(48, 32, 24);
   auto spins = this->random_spins(lattice, 3);
   HeldMemory const held("cayspin::Minimizer");
   Minimizer<Spins> minimizer(spins);

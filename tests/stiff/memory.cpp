@@ -11,7 +11,7 @@ namespace {
 template <class Stepper>
 void expect_memory_of_work_fields() {
   using Field = typename Stepper::spins_type;
-  auto const lattice = Lattice::cubic(48, 48, 48);
+  auto const lattice = Lattice::cubic(48, 32, 24);
   LandauLifshitz const generator(EffectiveField(Exchange(lattice, 20)), 0.1);
   auto spins = make_spins<Field>(lattice, [](auto i, auto j, auto k) {
     return Vector{1 + 0.01 * i, 0.02 * j, 0.01 * k};
