@@ -75,17 +75,19 @@ std::string with_quoted_words(std::string_view values) {
 SweptKey read_swept_key(std::string const& assignment) {
   auto const place = detail::one_line("--over " + assignment);
   auto const equals = assignment.find('=');
-  if (equals == std::string::npos || equals == 0 || assignment.find('\n') != std::string::npos)
-    detail::fail(place, "", "not a key with values", accepted);
   SweptKey swept;
   std::ranges::copy_if(assignment.substr(0, equals), std::back_inserter(swept.key),
                        [](char c) { return c != ' '; });
+  if (equals == std::string::npos || swept.key.empty() ||
+      assignment.find('\n') != std::string::npos)
+    detail::fail(place, "", "not a key with values", accepted);
 
   // The values are parsed as a TOML array, because the parser then tells where each value starts.
   auto const line =
       "value = [" + with_quoted_words(std::string_view(assignment).substr(equals + 1));
   toml::table parsed;
   try {
+    parsed = toml::parse(line + "]\n", place);  // throws if the values end in a comment
     parsed = toml::parse(line + "\n]\n", place);
   } catch (toml::parse_error const& error) {
     detail::fail(place, "", fmt::format("the values are not TOML ({})", error.description()),

@@ -326,6 +326,7 @@ TEST_F(Sweeping, WrongUsesAreOneLine) {
   for (auto const& [more, part] : std::vector<std::pair<Arguments, std::string>>{
            {{}, "--over"},
            {{"--over", "system.damping"}, "not a key with values"},
+           {{"--over", " =0.1,0.2"}, "--over  =0.1,0.2: not a key with values; accepted: "},
            {{"--over", "system.damping="}, "not a list of values"},
            {{"--over", "field.applied=[0,0,1],[0,0"}, "not TOML"},
            {{"--over", "system.damping=0.1,0.1"}, "stands twice"},

@@ -27,6 +27,7 @@ TEST(SweptKey, WordsNeedNoQuotes) {
             (Values{"\"/tmp/x.h5\"", "\"../y.h5\"", "\"2nd.h5\"", "2"}));
   EXPECT_EQ(read_swept_key("a=true,inf,['x',\"y\"],{b=\"c\"}").values,
             (Values{"true", "inf", "['x',\"y\"]", "{b=\"c\"}"}));
+  EXPECT_EQ(read_swept_key("a='x # y',2").values, (Values{"'x # y'", "2"}));
   EXPECT_TRUE(read_swept_key("a=heun,1").numbers.empty());
   EXPECT_THROW(read_swept_key("a=heun,heun"), SceneError);
 }
@@ -40,8 +41,9 @@ TEST(SweptKey, NumbersAreKnownAsNumbers) {
 }
 
 TEST(SweptKey, WhatIsNoListOfValuesIsRefused) {
-  for (char const* text : {"a", "=1", "a=", "a=1,,2", "a=[1", "a=1]", "a=1\nb=2", "a=1,1", "a=x y",
-                           "a=1] # [", "a=1]\nvalue=[2"})
+  for (char const* text :
+       {"a", "=1", "a=", "a=1,,2", "a=[1", "a=1]", "a=1\nb=2", "a=1,1", "a=x y", "a=1] # [",
+        "a=1]\nvalue=[2", " =1", "a=1,2 # 3", "a=1, # 2, 3", "a=[1, # 2], [3]"})
     EXPECT_THROW(read_swept_key(text), SceneError) << text;
 }
 
