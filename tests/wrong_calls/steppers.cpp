@@ -99,6 +99,25 @@ TEST(WrongCallsOfSteppers, MadeForNoField) {
   });
 }
 
+TEST(WrongCallsOfSteppers, MovedFrom) {
+  for_each_stepper([](std::string const& name, auto const& make) {
+    Lattice const own = own_lattices[0];
+    auto const generator = generator_on(own);
+    Spins spins("spins", own);
+    auto const step = [&](auto& stepper) { stepper.step(Exec(), generator, spins, 0, 0.1); };
+    auto stepper = make(spins);
+    auto other = std::move(stepper);
+    expect_refused({{name + ", step", [&] { step(stepper); }},
+                    {name + ", integrate", [&] {
+                       integrate(Exec(), stepper, generator, spins, Times{0, 0.1, 3});
+                     }}});
+    step(other);
+    stepper = std::move(other);
+    expect_refused({{name + ", after it was assigned", [&] { step(other); }}});
+    step(stepper);
+  });
+}
+
 TEST(WrongCallsOfSteppers, SigmasThatAreNotFinite) {
   Spins const like("like", own_lattices[0]);
   for (double const wrong : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {

@@ -34,8 +34,14 @@ class StepperBase {
   // Not copyable: a copy would share the memory of the stepper's fields, but have its own counters.
   StepperBase(StepperBase const&) = delete;
   StepperBase& operator=(StepperBase const&) = delete;
-  StepperBase(StepperBase&&) = default;
-  StepperBase& operator=(StepperBase&&) = default;
+  // A moved-from stepper has no lattice, so that it refuses all spins.
+  StepperBase(StepperBase&& other)
+      : lattice_(std::exchange(other.lattice_, no_lattice)), region_(other.region_) {}
+  StepperBase& operator=(StepperBase&& other) {
+    lattice_ = std::exchange(other.lattice_, no_lattice);
+    region_ = other.region_;
+    return *this;
+  }
 
   /// For cayspin::integrate: visits no field, because by default a step does not swap the memory of
   /// the spins.
@@ -93,6 +99,8 @@ class StepperBase {
   Lattice lattice_;
 
  private:
+  static constexpr Lattice no_lattice{{0, 0, 0}};
+
   CAYSPIN_DETAIL_NOINLINE std::string stage_label(std::size_t number) const {
     return label("::stage_") + std::to_string(number);
   }
