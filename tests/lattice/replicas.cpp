@@ -3,6 +3,7 @@
 // the shape and the boundaries, also with noise.
 #include "../support/backends.hpp"
 #include "../support/coefficients.hpp"
+#include "../support/wrong_call.hpp"
 
 #include <cayspin/cayspin.hpp>
 #include <cayspin/replicas.hpp>
@@ -228,6 +229,12 @@ TYPED_TEST(Replicas, AreRefusedWhereReplicasWouldSeeEachOther) {
   EXPECT_THROW(Minimizer<Spins>{spins}, std::invalid_argument);
   auto none = all;
   none.replicas = 0;
+  EXPECT_EQ(refusal([&] { StiffGauss2<Spins>{spins}; }),
+            "cayspin::StiffGauss2: does not work on replicas of a lattice");
+  EXPECT_EQ(refusal([&] { StiffGauss4<Spins>{spins}; }),
+            "cayspin::StiffGauss4: does not work on replicas of a lattice");
+  EXPECT_EQ(refusal([&] { AdaptiveStiffGauss2<Spins>{spins}; }),
+            "cayspin::AdaptiveStiffGauss2: does not work on replicas of a lattice");
   EXPECT_THROW(none.validate(), std::invalid_argument);
   none.replicas = std::int64_t{1} << 60;
   EXPECT_THROW(none.validate(), std::invalid_argument);

@@ -36,7 +36,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
   static constexpr int work_fields = Base::work_fields + 2;
 
   /// Throws std::invalid_argument for invalid options, for example a tolerance below 32 times the
-  /// epsilon of the precision.
+  /// epsilon of the precision, and for a lattice with replicas.
   explicit AdaptiveStiffGauss2(Spins const& like, StepOptions const& options = {})
       : Base(name, like, {}),
         OwnSteps(options, Base::order + 1, StepOptions::least_tolerance<Real>(),

@@ -53,6 +53,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   // The solver's grids are always in single precision, and count half if Real is double.
   static constexpr int work_fields = 2 + 5 * stages + History::fields + (sizeof(Real) == 8 ? 4 : 8);
 
+  /// Throws std::invalid_argument for invalid options, and for a lattice with replicas.
   explicit StiffGauss(Spins const& like, StiffOptions options = {})
       : StiffGauss(name, like, options) {}
 
@@ -95,7 +96,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   /// that of the stepper, so call spins.array() again after it. Waits for each correction. If a
   /// term of the field throws, `spins` is unchanged. Throws NotConverged, with `spins` unchanged,
   /// when the equations are not solved even for halved steps, and std::invalid_argument when
-  /// `spins` is not on the lattice given at construction or the lattice has replicas.
+  /// `spins` is not on the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -128,6 +129,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
 
   StiffGauss(std::string const& own_name, Spins const& like, StiffOptions const& options)
       : detail::StepperBase<Spins>(own_name, like.lattice()), solving_(options) {
+    detail::require_one_replica(this->label("").c_str(), like.lattice());
     if (!(options.tolerance >= 0) || options.iterations < 1 || options.halvings < 0)
       throw std::invalid_argument(
           "cayspin::" + own_name +
