@@ -178,6 +178,14 @@ inline void refused() {
   // RedBlack moves spins by the Landau-Lifshitz equation: its generator is a
   RedBlack2(spins).step(exec, orthogonal(spin_chain), spins, 0, 0.1);
 #endif
+#if MISTAKE(49)  // red_black_of_pair_couplings
+  // RedBlack takes couplings between nearest neighbours along the axes only
+  {
+    PairCouplings<Kokkos::HostSpace> const couplings(Lattice::chain(3), {});
+    LandauLifshitz const generator(EffectiveField(Zeeman{{0, 0, 1}}, couplings), 0.1);
+    RedBlack2(spins).step(exec, generator, spins, 0, 0.1);
+  }
+#endif
 #if MISTAKE(22)  // energy_control_of_changing_field
   // EnergyControl refuses fields that depend on t
   { EnergyControl const control{spins, LandauLifshitz{EffectiveField{rotating}, 0}}; }

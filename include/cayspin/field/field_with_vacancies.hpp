@@ -15,23 +15,6 @@ namespace cayspin::inline v0_2 {
 
 namespace detail {
 
-template <template <class> class Wanted, class Term>
-inline constexpr bool is_a = false;
-template <template <class> class Wanted, class Argument>
-inline constexpr bool is_a<Wanted, Wanted<Argument>> = true;
-
-/// True if a term, or a part of it at any depth, is a Wanted<..>.
-template <template <class> class Wanted, class Term>
-constexpr bool holds();
-template <template <class> class Wanted, class... Parts>
-constexpr bool any_holds(PartsOf<Parts...>) {
-  return (holds<Wanted, Parts>() || ...);
-}
-template <template <class> class Wanted, class Term>
-constexpr bool holds() {
-  return is_a<Wanted, Term> || any_holds<Wanted>(PartsOfTerm<Term>());
-}
-
 /// A stencil that treats a vacant neighbour as missing: the spin at the centre, or the vector
 /// passed for missing neighbours, replaces it.
 template <class Stencil, class Real>

@@ -29,6 +29,23 @@ PartsOf<> parts_of(void const*);
 template <class Term>
 using PartsOfTerm = decltype(parts_of(std::declval<Term const*>()));
 
+template <template <class> class Wanted, class Term>
+inline constexpr bool is_a = false;
+template <template <class> class Wanted, class Argument>
+inline constexpr bool is_a<Wanted, Wanted<Argument>> = true;
+
+/// True if a term, or a part of it at any depth, is a Wanted<..>.
+template <template <class> class Wanted, class Term>
+constexpr bool holds();
+template <template <class> class Wanted, class... Parts>
+constexpr bool any_holds(PartsOf<Parts...>) {
+  return (holds<Wanted, Parts>() || ...);
+}
+template <template <class> class Wanted, class Term>
+constexpr bool holds() {
+  return is_a<Wanted, Term> || any_holds<Wanted>(PartsOfTerm<Term>());
+}
+
 template <class Take, class Term, class Stencil>
 concept gathers = requires(Take const& take, Term const& term, Stencil const& stencil) {
   { term.gather(take, stencil) } -> std::convertible_to<VectorOf<Stencil>>;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/field/pair_field.hpp>
+#include <cayspin/field/parts.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stepper/red_black_stage.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
@@ -116,6 +118,9 @@ class RedBlack : public detail::StepperBase<Spins> {
                   "RedBlack moves spins by the Landau-Lifshitz equation: its generator is a "
                   "LandauLifshitz, or has a prepare that returns one; `orthogonal` around it would "
                   "change nothing here.");
+    static_assert(!detail::holds<detail::PairField, Prepared>(),
+                  "RedBlack takes couplings between nearest neighbours along the axes only, and "
+                  "PairCouplings may have bonds between spins of one colour.");
     return detail::RedBlackStage<Prepared, Real>{
         {std::move(first), std::move(second)}, spins.array(), changes, {}, 1, 0, false};
   }
