@@ -12,6 +12,7 @@
 #include <concepts>
 #include <cstdint>
 #include <stdexcept>
+#include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -265,7 +266,9 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
   if (times.first < 0)
     throw std::invalid_argument("cayspin::integrate: the first step has a negative number");
   if (times.steps < times.first)
-    throw std::invalid_argument("cayspin::integrate: the number of steps is negative");
+    throw std::invalid_argument("cayspin::integrate: steps is " + std::to_string(times.steps) +
+                                "; it must be at least first, which is " +
+                                std::to_string(times.first));
   // These checks come before an observer sees the spins, and are made even if there are no steps to
   // take.
   if constexpr (requires { stepper.check_spins(spins); }) stepper.check_spins(spins);
@@ -310,10 +313,10 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
 /// is in the original memory of `spins`, so that copies of the handle see it, too. Lengths of spins
 /// are not checked: call require_unit_spins for your own spins.
 ///
-/// Throws std::invalid_argument when begin or dt is not finite, times.first or the number of steps
-/// is negative, or the stepper or a term of the field was made for another lattice than that of the
-/// spins. These checks come before the first call of an observer, and are made even if there are no
-/// steps to take.
+/// Throws std::invalid_argument when begin or dt is not finite, times.first is negative,
+/// times.steps is below times.first, or the stepper or a term of the field was made for another
+/// lattice than that of the spins. These checks come before the first call of an observer, and are
+/// made even if there are no steps to take.
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
 Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator, Spins& spins,
                   Times const& times, Observers&&... observers) {

@@ -39,7 +39,8 @@ void copy_between(Exec const& exec, SiteField<Real, Components, MemorySpace> con
   check_access<Exec, MemorySpace>();
   auto const& lattice = of_all.lattice();
   require_sites("cayspin::copy_replica", of_all.sites());
-  require_lattice("cayspin::copy_replica", lattice.with_replicas(1), of_one.lattice());
+  require_lattice("cayspin::copy_replica's field of one replica", of_one.lattice(),
+                  lattice.with_replicas(1));
   if (replica < 0 || replica >= lattice.replicas)
     throw std::invalid_argument("cayspin::copy_replica: there is no replica " +
                                 std::to_string(replica) + "; accepted: 0 .. " +

@@ -217,7 +217,9 @@ TYPED_TEST(Replicas, AreCopiedOneByOne) {
     EXPECT_EQ(numbers_of_replica(numbers_of(to), replicas - 1 - r),
               numbers_of_replica(numbers_of(from), r));
   EXPECT_THROW(copy_replica(this->exec, from, replicas, alone), std::invalid_argument);
-  EXPECT_THROW(copy_replica(this->exec, from, 0, to), std::invalid_argument);
+  EXPECT_EQ(refusal([&] { copy_replica(this->exec, from, 0, to); }),
+            "cayspin::copy_replica's field of one replica: made for a lattice of 5 replicas, and "
+            "the spins have 1");
   EXPECT_THROW(copy_replica(this->exec, Spins(), 0, Spins()), std::invalid_argument);
   EXPECT_THROW(copy_to_replica(this->exec, Spins(), Spins(), 0), std::invalid_argument);
 }
@@ -227,14 +229,14 @@ TYPED_TEST(Replicas, AreRefusedWhereReplicasWouldSeeEachOther) {
   auto const all = Lattice::square(8, 8).with_replicas(2);
   Spins const spins("spins", all);
   EXPECT_THROW(Minimizer<Spins>{spins}, std::invalid_argument);
-  auto none = all;
-  none.replicas = 0;
   EXPECT_EQ(refusal([&] { StiffGauss2<Spins>{spins}; }),
             "cayspin::StiffGauss2: does not work on replicas of a lattice");
   EXPECT_EQ(refusal([&] { StiffGauss4<Spins>{spins}; }),
             "cayspin::StiffGauss4: does not work on replicas of a lattice");
   EXPECT_EQ(refusal([&] { AdaptiveStiffGauss2<Spins>{spins}; }),
             "cayspin::AdaptiveStiffGauss2: does not work on replicas of a lattice");
+  auto none = all;
+  none.replicas = 0;
   EXPECT_THROW(none.validate(), std::invalid_argument);
   none.replicas = std::int64_t{1} << 60;
   EXPECT_THROW(none.validate(), std::invalid_argument);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // integrate() around a stepper: times, calls of observers, early ends, counts.
 #include "../support/backends.hpp"
+#include "../support/wrong_call.hpp"
 
 #include <cayspin/cayspin.hpp>
 
@@ -212,7 +213,12 @@ TYPED_TEST(Integrate, WhatIsRefused) {
   EXPECT_THROW(run({0, nan, 1}), std::invalid_argument);
   EXPECT_THROW(run({nan, 0.1, 1}), std::invalid_argument);
   EXPECT_THROW(run({0, std::numeric_limits<double>::infinity(), 1}), std::invalid_argument);
-  EXPECT_THROW(run({0, 0.1, -1}), std::invalid_argument);
+  EXPECT_EQ(refusal([&] {
+              run({0, 0.1, -1});
+            }),
+            "cayspin::integrate: steps is -1; it must be at least first, which is 0");
+  EXPECT_EQ(refusal([&] { run({.dt = 0.1, .steps = 3, .first = 5}); }),
+            "cayspin::integrate: steps is 3; it must be at least first, which is 5");
   EXPECT_TRUE(this->stepper.starts.empty());
 }
 

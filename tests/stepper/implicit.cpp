@@ -95,7 +95,10 @@ TYPED_TEST(ImplicitStep, WithoutRootLeavesTheSpins) {
       stepper.step(Space{}, this->slab.natural(), spins, 0.5, 3.0);
       FAIL() << "converged";
     } catch (NotConverged const& error) {
-      EXPECT_NE(std::string(error.what()).find("dt = 3"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what())
+                    .find("is not solved: dt = 3 is too large, or the numbers are not finite"),
+                std::string::npos)
+          << error.what();
       EXPECT_EQ(error.t(), 0.5);
       EXPECT_EQ(error.dt(), 3);
     }

@@ -3,6 +3,9 @@
 // and observers.
 #include "wrong_calls.hpp"
 
+#include <cmath>
+#include <functional>
+
 namespace cayspin::test {
 namespace {
 
@@ -168,6 +171,16 @@ TEST(WrongCallsOfTerms, MadeOfNothing) {
       {"HostField", [] { HostField(Spins(), NoField()); }},
       {"EnergyControl", [] { EnergyControl(Spins(), generator_on(Lattice())); }},
   });
+  for (auto const& [call, sentence] : std::vector<std::pair<std::function<void()>, std::string>>{
+           {[] { LandauLifshitz(EffectiveField(Zeeman()), Scalars()); },
+            "LandauLifshitz: the damping"},
+           {[] { SiteDependentExchange{Scalars()}; }, "SiteDependentExchange: the constants"},
+           {[] { FieldWithVacancies(EffectiveField(Zeeman()), Scalars()); },
+            "FieldWithVacancies: the occupation"},
+           {[] { SiteDependentUniaxialAnisotropy(1, Vectors()); },
+            "SiteDependentUniaxialAnisotropy: the axis"},
+           {[] { RigidBodyEnsemble{Tensors()}; }, "RigidBodyEnsemble: the inverse inertia"}})
+    EXPECT_EQ(refusal(call), "cayspin::" + sentence + ": the field has no sites");
   for (auto const& none : {Tensors(), moved_from<Tensors>(Lattice::chain(3))}) {
     Spins spins("spins", Lattice::chain(3));
     expect_refused({{"RigidBodyEnsemble", [&] { energy(Exec(), RigidBodyEnsemble(none), spins); }},
@@ -175,6 +188,29 @@ TEST(WrongCallsOfTerms, MadeOfNothing) {
                        LieEuler(spins).step(Exec(), RigidBodyEnsemble(none), spins, 0, 0.1);
                      }}});
   }
+}
+
+TEST(WrongCallsOfTerms, NormalsWithoutDirection) {
+  auto const lattice = Lattice::square(3, 3);
+  for (double const wrong : {0.0, std::nan(""), HUGE_VAL})
+    EXPECT_EQ(refusal([&] {
+                InterfacialDmi(lattice, 1, {wrong, 0, 0});
+              }),
+              "cayspin::InterfacialDmi: the normal must be finite and not zero");
+}
+
+TEST(WrongCallsOfNoise, SpinsAndFactorsOfOthers) {
+  for (auto const& none : {Spins(), moved_from<Spins>(Lattice::chain(3))})
+    expect_refused({{"no sites", [&] { ThermalNoise(none, 0.1, {.temperature = 1}); }}});
+  for (auto const& own : own_lattices)
+    for (auto const& [kind, factors] : fields_of_others<Scalars>(own)) {
+      SCOPED_TRACE("factors " + kind);
+      Spins const spins("spins", own);
+      expect_made_for_another("ThermalNoise's factors", factors.lattice(), own,
+                              {{"ThermalNoise", [&] {
+                                  ThermalNoise<Spins>(spins, 0.1, {.temperature = 1}, factors);
+                                }}});
+    }
 }
 
 TEST(WrongCallsOfTerms, SolversOnTheHost) {

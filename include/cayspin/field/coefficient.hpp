@@ -82,9 +82,10 @@ struct Signs {
 };
 
 /// Returns which signs the numbers have, after waiting for the kernel. Throws std::invalid_argument
-/// when a number is not finite.
+/// when the field has no sites or a number is not finite.
 template <class Real, class MemorySpace>
 Signs signs_of(ScalarField<Real, MemorySpace> const& numbers, char const* what) {
+  require_sites(what, numbers.sites());
   using Exec = typename MemorySpace::execution_space;
   fence_all_instances<Exec>("cayspin::signs_of");
   Exec const exec;
@@ -112,9 +113,11 @@ struct NotFiniteOfSites {
   }
 };
 
-/// Throws std::invalid_argument when a number is not finite, after waiting for the kernel.
+/// Throws std::invalid_argument when the field has no sites or a number is not finite, after
+/// waiting for the kernel.
 template <class Real, int Components, class MemorySpace>
 void require_finite(SiteField<Real, Components, MemorySpace> const& field, char const* what) {
+  require_sites(what, field.sites());
   using Exec = typename MemorySpace::execution_space;
   fence_all_instances<Exec>("cayspin::require_finite");
   Exec const exec;

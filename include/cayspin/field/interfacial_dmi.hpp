@@ -22,7 +22,8 @@ class UniformInterfacialDmi {
   UniformInterfacialDmi(Lattice const& lattice, double constant, Vec3<double> const& normal) {
     double const length = std::hypot(normal.x, normal.y, normal.z);
     if (!(length > 0) || !std::isfinite(length))
-      throw std::invalid_argument("cayspin::InterfacialDmi: the normal must not be zero");
+      throw std::invalid_argument(
+          "cayspin::InterfacialDmi: the normal must be finite and not zero");
     Vec3<double> const axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       double const scale =

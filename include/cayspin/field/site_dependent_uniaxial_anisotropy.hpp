@@ -100,6 +100,7 @@ class SiteDependentUniaxialAnisotropy : public detail::PreparedOnce {
  private:
   template <class Real, class MemorySpace>
   static void require_unit(SiteField<Real, 3, MemorySpace> const& axes) {
+    detail::require_sites("cayspin::SiteDependentUniaxialAnisotropy: the axis", axes.sites());
     using Exec = typename MemorySpace::execution_space;
     detail::fence_all_instances<Exec>("cayspin::SiteDependentUniaxialAnisotropy");
     Exec const exec;

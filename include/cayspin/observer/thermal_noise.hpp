@@ -57,12 +57,12 @@ class ThermalNoise {
  public:
   enum class Half { before, after };
 
-  /// Throws std::invalid_argument for a temperature, damping or factor that is negative or not
-  /// finite, and if options.cell_sites or options.replicas is neither empty nor of the right size.
-  /// With options.columns_are_replicas, also throws on a lattice with replicas, on a part of a
-  /// lattice, and if options.cell_sites is not empty.
+  /// Throws std::invalid_argument for spins that have no sites, for a temperature, damping or
+  /// factor that is negative or not finite, and if options.cell_sites or options.replicas is
+  /// neither empty nor of the right size. With options.columns_are_replicas, also throws on a
+  /// lattice with replicas, on a part of a lattice, and if options.cell_sites is not empty.
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options)
-      : lattice_(like.lattice()), damping_(damping), options_(options) {
+      : lattice_(detail::validated(like.lattice())), damping_(damping), options_(options) {
     if (!(damping >= 0) || !std::isfinite(damping))
       throw std::invalid_argument("cayspin::ThermalNoise: the damping must be finite and >= 0");
     if (!(options.temperature >= 0) || !std::isfinite(options.temperature))
@@ -88,7 +88,7 @@ class ThermalNoise {
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options,
                ScalarField<Real, typename Spins::memory_space> const& factors)
       : ThermalNoise(like, damping, options) {
-    require_lattice("cayspin::ThermalNoise", lattice_, factors.lattice());
+    require_lattice("cayspin::ThermalNoise's factors", factors.lattice(), lattice_);
     if (options.columns_are_replicas)
       throw std::invalid_argument(
           "cayspin::ThermalNoise: columns with factors of sites cannot be replicas");

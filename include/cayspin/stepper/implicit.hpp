@@ -118,7 +118,8 @@ class Implicit : public StepperBase<Spins> {
     if (!solve(
             exec, [&](Spins const& from, Spins const& to) { map(from, to, AtMiddle); }, spins))
       throw NotConverged(this->label("::step: the equation of the step from t = ") + to_text(t) +
-                             " is not solved: dt = " + to_text(dt) + " is too large",
+                             " is not solved: dt = " + to_text(dt) +
+                             " is too large, or the numbers are not finite",
                          t, dt);
     if constexpr (is_corrected) {
       sigma_.find(exec, generator, spins, t, dt);

@@ -115,7 +115,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
       give_back(spins);
       throw NotConverged(this->label("::step: the equation of the step from t = ") +
                              detail::to_text(t) + " is not solved: dt = " + detail::to_text(dt) +
-                             " is too large",
+                             " is too large, or the numbers are not finite",
                          t, dt);
     }
   }
