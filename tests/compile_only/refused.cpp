@@ -38,6 +38,14 @@ struct FieldIsANumber : Term {
   }
 };
 
+struct LoadsDoubles : NoField {
+  SiteArray<double, 3> field_of_sites;
+  template <class Stencil>
+  KOKKOS_FUNCTION auto field(Stencil const& stencil) const {
+    return stencil.site().load(field_of_sites);
+  }
+};
+
 struct NotAGenerator {};
 
 struct WholeGenerator {
@@ -177,6 +185,14 @@ inline void refused() {
 #if MISTAKE(21)  // red_black_of_another_equation
   // RedBlack moves spins by the Landau-Lifshitz equation: its generator is a
   RedBlack2(spins).step(exec, orthogonal(spin_chain), spins, 0, 0.1);
+#endif
+#if MISTAKE(50)  // term_that_loads_another_precision
+  // A field that a term loads has the precision of the spins
+  {
+    SpinField<float, Kokkos::HostSpace> const few("few", Lattice::chain(3));
+    SpinField<float, Kokkos::HostSpace> const output("output", Lattice::chain(3));
+    evaluate_field(exec, LoadsDoubles(), few, 0, output);
+  }
 #endif
 #if MISTAKE(49)  // red_black_of_pair_couplings
   // RedBlack takes couplings between nearest neighbours along the axes only

@@ -11,6 +11,7 @@
 #include <array>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 namespace cayspin::test {
@@ -197,6 +198,56 @@ TYPED_TEST(SiteDependent, EqualCoefficientsStepAlike) {
                      constant(0.25)));
   for (std::size_t i = 0; i < one.size(); ++i)
     ASSERT_NEAR(one[i], each[i], 256 * epsilon<typename TypeParam::Real>);
+}
+
+/// The term of docs/guide/own_field_term.md, in any memory space.
+template <class Real, class MemorySpace>
+struct AnisotropyOfSites {
+  ScalarField<Real, MemorySpace> constants;
+
+  struct InKernels {
+    SiteArray<Real, 1> constants;
+
+    template <class Stencil>
+    KOKKOS_FUNCTION auto field(Stencil const& stencil) const {
+      using Value = typename Stencil::value_type;
+      Value const k = stencil.site().load(constants);
+      return Vec3<Value>{Value(0), Value(0), k * stencil.center().z};
+    }
+    template <class Stencil>
+    KOKKOS_FUNCTION auto energy_density(Stencil const& stencil) const {
+      using Value = typename Stencil::value_type;
+      return Value(-0.5) * dot(stencil.center(), field(stencil));
+    }
+  };
+  template <class Spins>
+  void check_spins(Spins const& spins) const {
+    static_assert(std::is_same_v<typename Spins::value_type, Real>);
+    require_lattice("AnisotropyOfSites", constants.lattice(), spins.lattice());
+  }
+  template <class Exec, class Spins>
+  InKernels prepare(Exec const&, Spins const&, double) const {
+    return {constants.array()};
+  }
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const&, Spins const&) const {
+    return true;
+  }
+};
+
+TYPED_TEST(SiteDependent, UsersTermLoadsItsValues) {
+  using Real = typename TypeParam::Real;
+  using Spins = typename TypeParam::Spins;
+  auto const lattice = Lattice::cubic(11, 4, 3).with_replicas(2);
+  auto const m = random_directions(lattice.sites(), 53);
+  auto const constants = random_numbers_on<Spins>(lattice, -1, 1, 54);
+  AnisotropyOfSites<Real, typename Spins::memory_space> const users{constants};
+  SiteDependentUniaxialAnisotropy const ours(constants, {0, 0, 1});
+  auto const spins = spins_of<Spins>(lattice, m);
+  EXPECT_EQ(evaluated(this->exec, users, spins), evaluated(this->exec, ours, spins));
+  EXPECT_NEAR(energy(this->exec, users, spins).value, energy(this->exec, ours, spins).value, 1e-10);
+  EXPECT_THROW(energy(this->exec, users, Spins("other", Lattice::cubic(11, 4, 3))),
+               std::invalid_argument);
 }
 
 TYPED_TEST(SiteDependent, WhatIsRefused) {

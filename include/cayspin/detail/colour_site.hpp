@@ -30,15 +30,18 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
 
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, 1> const& array) const {
+    check_precision<Value, Real>();
     return at(array.data + row_.offset);
   }
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load(SiteArray<Real, 3> const& array) const {
+    check_precision<Value, Real>();
     return vector_at(array.data + row_.offset, array.stride);
   }
   template <class Real, int Components>
   KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, Components> const& array,
                                          int component) const {
+    check_precision<Value, Real>();
     return at(array.data + component * array.stride + row_.offset);
   }
 

@@ -96,16 +96,19 @@ class DeviceSite {
 
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, 1> const& array) const {
+    check_precision<Value, Real>();
     return detail::load<Value>(array.data + offset_);
   }
   template <class Array>
     requires(Array::components == 3)
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load(Array const& array) const {
+    check_precision<Value, typename Array::value_type>();
     return load_at(array, offset_);
   }
   template <class Real, int Components>
   KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, Components> const& array,
                                          int component) const {
+    check_precision<Value, Real>();
     return detail::load<Value>(array.data + component * array.stride + offset_);
   }
 

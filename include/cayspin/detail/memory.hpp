@@ -34,6 +34,13 @@ KOKKOS_FORCEINLINE_FUNCTION Value load(Real const* from) {
   }
 }
 
+/// Refuses double values at sites of float spins: rows of the two precisions have other strides.
+template <class Value, class Real>
+constexpr void check_precision() {
+  static_assert(sizeof(Real) <= sizeof(scalar_t<Value>),
+                "A field that a term loads has the precision of the spins.");
+}
+
 // Loads half a register of floats into a pack of doubles, by one instruction that converts.
 // Reductions of float fields use this.
 #if defined(CAYSPIN_DETAIL_AVX512)

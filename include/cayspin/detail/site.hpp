@@ -30,10 +30,12 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
 
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, 1> const& array) const {
+    check_precision<Value, Real>();
     return detail::load<Value>(array.data + offset());
   }
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load(SiteArray<Real, 3> const& array) const {
+    check_precision<Value, Real>();
     prefetch(array, offset() + row_.pitch);
     return load_at(array.data + row_.offset, array.stride);
   }
@@ -44,6 +46,7 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
   template <class Real, int Components>
   KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, Components> const& array,
                                          int component) const {
+    check_precision<Value, Real>();
     return detail::load<Value>(array.data + component * array.stride + offset());
   }
   template <class Real>
