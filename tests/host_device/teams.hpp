@@ -68,9 +68,10 @@ class TeamPolicyInternal<cayspin::test::HostDevice, Properties...>
   int team_size() const { return team_size_; }
   bool impl_auto_team_size() const { return false; }
   bool impl_auto_vector_length() const { return false; }
+  /// Large teams take long here, so that only those that share scratch memory may be large.
   template <class Functor>
   int team_size_max(Functor const&, ParallelForTag const&) const {
-    return 512;
+    return scratch_bytes_ > 0 ? 512 : 3;
   }
   static int scratch_size_max(int) { return 40000; }  // as Kokkos' for CUDA
   std::size_t scratch_size(int) const { return scratch_bytes_; }
