@@ -247,7 +247,7 @@ class IntegrationOf final : public Integration {
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
 Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator const& generator,
                                 Spins& spins, Times const& times, Observers&&... observers) {
-  static_assert(std::is_same_v<Spins, typename Stepper::spins_type>,
+  static_assert(std::is_same_v<std::remove_const_t<Spins>, typename Stepper::spins_type>,
                 "The stepper was made for another type of spin field.");
   static_assert(
       cayspin::Stepper<Stepper>,
@@ -320,6 +320,8 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
 Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator, Spins& spins,
                   Times const& times, Observers&&... observers) {
+  static_assert(!std::is_const_v<Spins>,
+                "integrate takes spins that are not const: a step may exchange their memory.");
   auto const run = [&] {
     return detail::integrate_in_any_memory(exec, stepper, generator, spins, times, observers...);
   };

@@ -14,6 +14,7 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
+#include <type_traits>
 
 namespace cayspin::inline v0_2 {
 
@@ -191,6 +192,8 @@ class Minimizer {
 template <class Exec, class Field, class Spins>
 Minimum minimize(Exec const& exec, Field const& field, Spins& spins,
                  MinimizeOptions const& options = {}) {
+  static_assert(!std::is_const_v<Spins>,
+                "minimize takes spins that are not const: a search may exchange their memory.");
   return Minimizer<Spins>(spins).minimize(exec, field, spins, options);
 }
 

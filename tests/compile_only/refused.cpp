@@ -186,6 +186,20 @@ inline void refused() {
   // RedBlack moves spins by the Landau-Lifshitz equation: its generator is a
   RedBlack2(spins).step(exec, orthogonal(spin_chain), spins, 0, 0.1);
 #endif
+#if MISTAKE(51)  // steps_of_const_spins
+  // integrate takes spins that are not const
+  {
+    Spins const start("start", Lattice::chain(3));
+    integrate(exec, stepper, body, start, times);
+  }
+#endif
+#if MISTAKE(52)  // minimum_of_const_spins
+  // minimize takes spins that are not const
+  {
+    Spins const start("start", Lattice::chain(3));
+    minimize(exec, Zeeman{{0, 0, 1}}, start);
+  }
+#endif
 #if MISTAKE(50)  // term_that_loads_another_precision
   // A field that a term loads has the precision of the spins
   {
