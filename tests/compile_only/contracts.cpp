@@ -113,6 +113,12 @@ static_assert(std::is_same_v<decltype(HostField(std::declval<Spins<float>>(), On
                              HostField<Spins<float>, OnHost>>);
 static_assert(std::is_same_v<decltype(HostField(Lattice(), OnHost({0, 0, 1}))),
                              HostField<SpinField<double>, OnHost>>);
+// So are those of SlowField.
+static_assert(
+    std::is_same_v<decltype(SlowField(std::declval<Spins<float>>(), SlabDemag({0, 0, 1}))),
+                   SlowField<Spins<float>, SlabDemag>>);
+static_assert(std::is_same_v<decltype(SlowField(Lattice(), SlabDemag({0, 0, 1}))),
+                             SlowField<SpinField<double>, SlabDemag>>);
 
 /// Multiplies vectors of any value type by numbers of any type, and calls next and previous without
 /// the keyword `template`.

@@ -206,4 +206,8 @@ class SlowField {
   std::shared_ptr<State> state_;
 };
 
+/// Deduces double precision in the default memory space when no spins are given.
+template <class Term>
+SlowField(Lattice, Term) -> SlowField<SpinField<double>, Term>;
+
 }  // namespace cayspin::inline v0_2
