@@ -100,19 +100,6 @@ TEST(StiffFields, Antiferromagnet) {
   EXPECT_LT(largest_distance(end, exact), 1e-3);
 }
 
-// A second call is refused like the first: it must not continue from the end of the refused step.
-TEST(StiffFields, ReplicasAreRefusedAtEachStep) {
-  auto const lattice = Lattice::chain(4).with_replicas(2);
-  LandauLifshitz const generator(EffectiveField(Exchange(lattice, 1.0)), 0.1);
-  Spins spins = wavy(lattice);
-  StiffGauss2<Spins> two(spins);
-  AdaptiveStiffGauss2<Spins> adaptive(spins, {.tolerance = 1e-4, .end = 1});
-  for (int time = 0; time < 2; ++time) {
-    EXPECT_THROW(two.step(Space(), generator, spins, 0, 0.1), std::invalid_argument);
-    EXPECT_THROW(adaptive.step(Space(), generator, spins, 0, 0.1), std::invalid_argument);
-  }
-}
-
 TEST(StiffFields, ExchangeIsMeasured) {
   auto lattice = film();
   lattice.spacing = {0.5, 2, 1};
