@@ -57,6 +57,8 @@ struct LatticeTerms {
   TermsIfThere<Others...> others;
   double magnitude;  // of a site's energy: round-off is proportional to it
 
+  bool couples_along_x() const { return first.couples_along_x() || others.any(); }
+
   template <class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector add_field(Stencil const& stencil, Vector const& h) const {
     auto const sum = cayspin::detail::add_field(first, stencil, h);

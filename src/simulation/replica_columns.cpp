@@ -8,6 +8,7 @@
 #include "space.hpp"
 
 #include <cayspin/detail/execution.hpp>
+#include <cayspin/detail/memory.hpp>
 
 #include <algorithm>
 #include <array>
@@ -69,17 +70,35 @@ bool can_differ(io::Scene const& one, io::Columns const& values) {
 
 constexpr std::int64_t lanes = 16;  // a register has at most this many
 
+std::int64_t parts_of(std::int64_t all, std::int64_t part) { return (all + part - 1) / part; }
+
 // Returns how many columns a lattice may have if its kernels are to stay on one thread.
 std::int64_t columns_on_a_thread(std::int64_t sites) {
   return cayspin::detail::calling_thread_sites / sites / lanes * lanes;
 }
 
-// Returns how many columns each lattice gets: enough that its rows are not short, and otherwise few
-// enough that its kernels stay on one thread and that each thread has a lattice.
-std::int64_t columns_of_a_lattice(std::int64_t replicas, std::int64_t sites, int threads) {
-  auto const parts_of = [](std::int64_t all, std::int64_t part) { return (all + part - 1) / part; };
-  std::int64_t const each = parts_of(parts_of(replicas, threads), lanes) * lanes;
-  return std::min(std::max(2 * lanes, std::min(columns_on_a_thread(sites), each)), replicas);
+// Returns the columns of each of several threads that share a lattice: few enough that the fields
+// of a stage fit into the cache of a core, but enough that rows are not short.
+std::int64_t columns_in_cache(std::int64_t sites, Precision precision) {
+  std::int64_t const number = precision == Precision::double_precision ? 8 : 4;
+  constexpr std::int64_t fields = 4, long_row_bytes = 512;
+  auto const cache = static_cast<std::int64_t>(cayspin::detail::core_cache_bytes());
+  return std::clamp(cache / (fields * 3 * number * sites) / lanes * lanes, 2 * lanes,
+                    long_row_bytes / number);
+}
+
+// Returns how many columns each lattice gets on a host, or nothing if separate runs of the replicas
+// are faster. The kernels of a lattice stay on one thread if that leaves long rows, and each thread
+// then has a lattice; otherwise the threads share each lattice.
+std::optional<std::int64_t> columns_of_a_lattice(std::int64_t replicas, std::int64_t sites,
+                                                 int threads, Precision precision) {
+  auto const on_a_thread = columns_on_a_thread(sites);
+  auto const each = parts_of(parts_of(replicas, threads), lanes) * lanes;
+  if (on_a_thread >= 2 * lanes)
+    return std::min(replicas, std::max(2 * lanes, std::min(on_a_thread, each)));
+  if (threads > 1 && each < 2 * lanes) return std::nullopt;  // waiting for threads takes longer
+  auto const lattices = parts_of(replicas, threads * columns_in_cache(sites, precision));
+  return std::min(replicas, parts_of(parts_of(replicas, lattices), lanes) * lanes);
 }
 
 // `values`: those of the columns.
@@ -167,10 +186,11 @@ std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::S
   if (!values || !can_differ(one, *values)) return opened;
   auto sample = SceneRun::open(one, settings);
   bool const on_host = is_on_host(sample->space());
-  // On several threads, larger replicas are faster as separate runs, one per thread.
-  if (on_host && sample->threads() > 1 && columns_on_a_thread(sites) < 2 * lanes) return opened;
-  auto const columns =
-      on_host ? columns_of_a_lattice(replicas, sites, sample->threads()) : replicas;
+  auto const on_lattice =
+      on_host ? columns_of_a_lattice(replicas, sites, sample->threads(), settings.precision)
+              : replicas;
+  if (!on_lattice) return opened;
+  auto const columns = *on_lattice;
   auto const scene_from = [&](std::int64_t begin) {
     std::int64_t const count = std::min(columns, replicas - begin);
     return scene_of_columns(one, begin, values->part(begin, count), count);
@@ -178,7 +198,7 @@ std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::S
   auto const of_lattice = make_plan(scene_from(0), settings.precision).memory.total() +
                           2 * bytes_of_open_run +  // the columns, and a replica for samples
                           columns * bytes_of_column;
-  auto const lattices = (share.on_this_machine + columns - 1) / columns;
+  auto const lattices = parts_of(share.on_this_machine, columns);
   require_memory_of_replicas(scene, static_cast<double>(lattices) * static_cast<double>(of_lattice),
                              share.available);
   opened.emplace();

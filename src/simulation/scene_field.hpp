@@ -133,6 +133,7 @@ class SceneField {
     }
     if (stored_) now.stored = cayspin::detail::prepare_term(*stored_, exec, spins, t);
     if (slow_) now.stored = cayspin::detail::prepare_term(*slow_, exec, spins, t);
+    now.couples_along_x = lattice_terms_.couples_along_x();
     return now;
   }
 

@@ -153,10 +153,12 @@ struct SceneFieldNow {
   // data, replaces `zeeman`. The others, if they have data, are entries of the matrix of quadratic
   // terms, which replace those of `quadratic`.
   cayspin::SiteArray<Real, 3> applied_of_sites = {}, diagonal_of_sites = {}, others_of_sites = {};
+  bool couples_along_x = true;
 
   // Set by begin_row, for its row.
   cayspin::detail::RowInput<Real> row = {};  // H found so far
-  // Number of sites in neither the first nor the last pack; 0 if H of all sites is in `row`.
+  // Number of sites from the second pack on whose H kernels compute: all but those of the last
+  // pack; 0 if H of all sites is in `row`; every_site if the ends of rows need no care.
   std::ptrdiff_t compiled_sites = 0;
   bool adds_row = false, adds_more = false;
 
@@ -166,13 +168,21 @@ struct SceneFieldNow {
     constexpr std::ptrdiff_t lanes = cayspin::detail::host_lanes<Real>;
     std::ptrdiff_t const last = (spins.row.nx - 1) / lanes * lanes;
     bool const is_in_row = along_rows.is_whole || has_values_of_sites();
-    compiled_sites = is_in_row ? 0 : std::max<std::ptrdiff_t>(last - lanes, 0);
+    compiled_sites = is_in_row    ? 0
+                     : has_ends() ? std::max<std::ptrdiff_t>(last - lanes, 0)
+                                  : every_site;
     row = {fields.data - begin, fields.stride};
     adds_row = along_rows.evaluate != nullptr;
     adds_more = has_stored || adds_row;
     if (adds_row) along_rows.evaluate(along_rows.terms, spins, begin, end, fields);
   }
   bool has_values_of_sites() const { return applied_of_sites.data || diagonal_of_sites.data; }
+  /// Returns true if H at the ends of rows differs in form from H between them.
+  bool has_ends() const {
+    // Single numbers are multiplied by coefficients that are zero; what lies past an end may be
+    // NaN.
+    return couples_along_x || cayspin::detail::host_lanes<Real> == 1;
+  }
   /// Computes H in the packs at the ends of a row, from the results of begin_row.
   void find_row_ends(cayspin::detail::RowOfSpins<Real> const& spins, std::int32_t begin,
                      std::int32_t end, cayspin::detail::RowFields<Real> const& fields,
@@ -293,6 +303,7 @@ struct SceneFieldNow {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> uniform_part(Spin const& spin) const {
     return quadratic.add_field(spin.center(), zeeman.field(spin));
   }
+  static constexpr std::ptrdiff_t every_site = -1;  // as an unsigned number, the largest
   KOKKOS_FORCEINLINE_FUNCTION bool is_compiled(std::ptrdiff_t x) const {
     constexpr std::ptrdiff_t first = cayspin::detail::host_lanes<Real>;
     return static_cast<std::size_t>(x - first) < static_cast<std::size_t>(compiled_sites);

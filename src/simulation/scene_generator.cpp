@@ -4,9 +4,9 @@
 #include "io/scene.hpp"
 #include "multirate_method.hpp"
 #include "own_field_beside.hpp"
+#include "row_piece.hpp"
 #include "sites_of_cell.hpp"
 #include "space.hpp"
-#include "terms_along_row.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -93,10 +93,11 @@ void SceneFieldNow<Real>::find_row_ends(cayspin::detail::RowOfSpins<Real> const&
                                         cayspin::detail::RowFields<Real> const& fields,
                                         bool turning_alone) const {
   if (along_rows.is_whole) return;
-  RowPiece<Real> const piece{spins, begin, end, fields};
+  RowPiece<Real> const piece{spins, begin, end, fields, has_ends()};
   if (has_values_of_sites())
     return turning_alone ? piece.for_each(StoreField<true, Real, SceneFieldNow>{*this, fields})
                          : piece.for_each(StoreField<false, Real, SceneFieldNow>{*this, fields});
+  if (!has_ends()) return;
   if (turning_alone)
     piece.for_each_at_ends(StoreField<true, Real>{*this, fields});
   else

@@ -4,12 +4,14 @@
 #include "ensemble_of_chains.hpp"
 #include "simulation/failure.hpp"
 
+#include <Kokkos_Core.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <random>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -209,6 +211,38 @@ TEST(ValuesOfColumns, WithDifferentFieldsAndDampingsAreRunsOfTheirOwn) {
     EXPECT_TRUE(are_columns(scene));
     expect_values_of_replicas(scene);
     expect_bits_of_own_runs(scene, {0, 1, 47, 48, 255, 256, 299});
+  }
+}
+
+// A lattice of columns with more than 64 sites each is shared by all threads.
+TEST(ValuesOfColumns, OfLatticesThatThreadsShareAreRunsOfTheirOwn) {
+  std::mt19937 random(20);
+  auto const one_of = [&](std::vector<std::string> const& choices) {
+    return choices[random() % choices.size()];
+  };
+  int columns = 0;
+  for (int composition = 0; composition < 30; ++composition) {
+    std::vector<std::string> const changes{
+        "lattice=" + one_of({"{shape=[65]}", "{shape=[100],spacing=2}", "{shape=[1,90]}",
+                             "{shape=[13,11],spacing=[1,2]}", "{shape=[16,16]}",
+                             "{shape=[17,1,19],spacing=[1,2,3]}"}),
+        "lattice.boundary=" + one_of({"'open'", "'periodic'"}),
+        "field.exchange=" + one_of({"0.0", "1.0", "-0.7"}),
+        "field.applied=" + one_of({"[0.3,-0.2,0]", "[0.3,'sin(9*t)',0]"}),
+        "field.anisotropy=" + one_of({"{constant=0.4,axis=[0,3,4]}", "{constant=-1,axis=[0,0,1]}"}),
+        "integrator.method=" +
+            one_of({"'rkmk4'", "'heun'", "'euler'", "'cf4'", "'rkmk8'", "'projected_rk4'"}),
+        "thermal={seed=3,temperature=" + one_of({"0}", "0.1}", "'0.1*t'}"}),
+        "ensemble.replicas=" + one_of({"64", "150", "237"}),
+        one_of({"ensemble.vary={'system.damping'={from=0.01,to=1}}",
+                "ensemble.vary={'field.anisotropy.constant'={from=-0.4,to=0.7}}", "field.mu0=1"})};
+    SCOPED_TRACE(fmt::format("{}", fmt::join(changes, " ")));
+    auto const scene = scene_of(llg_scene("0.1", "rkmk4", 40, chains).text, changes);
+    columns += are_columns(scene) ? 1 : 0;
+    expect_bits_of_own_runs(scene, {0, 1, 31, 32, 63});
+  }
+  if (Kokkos::DefaultHostExecutionSpace().concurrency() <= 2) {  // on more, there are other runs
+    EXPECT_GT(columns, 20);
   }
 }
 

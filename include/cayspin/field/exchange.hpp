@@ -27,6 +27,8 @@ class UniformExchange {
         couples_[0] && coefficient_[0] == coefficient_[1] && coefficient_[1] == coefficient_[2];
   }
 
+  bool couples_along_x() const { return couples_[0]; }
+
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     return add_field(stencil, zero<ValueOf<Stencil>>());
