@@ -29,6 +29,12 @@ TERMS = {
     "vacancies": ({}, {"occupied": "'i + j > 2'"}, {}),
     "frozen": ({}, {"frozen": "'i + j < 2'"}, {}),
     "moments": ({}, {"moments": "2"}, {}),
+    "moments of sites": ({}, {"moments": "'1 + 0.1*i/64'"}, {}),
+    "moments and exchange of sites": (
+        {"exchange": "'1 + 1e-9*i'"},
+        {"moments": "'1 + 0.1*i/64'"},
+        {},
+    ),
 }
 SHAPES = {"64^3": (64, 64, 64), "128^3": (128, 128, 128), "256^2": (256, 256)}
 METHODS = ("heun", "rkmk4", "projected_rk4", "tsit5")
