@@ -185,7 +185,7 @@ TYPED_TEST(ThermalTurns, OfSitesOneByOneAreThoseOfPacks) {
   constexpr std::uint64_t seed = 0x123456789abcdefULL, draw = 1ULL << 40U;
   expect_turns_of_packs<TypeParam>(
       turn, Numbers{{seed, draw}, 0, 0, 5, 3, Numbers::places_of_row(77), 0});
-  expect_turns_of_packs<TypeParam>(turn, detail::NumbersOfColumns{{seed, draw}, 16});
+  expect_turns_of_packs<TypeParam>(turn, detail::NumbersOfColumns<true>{{seed, draw}, 16});
 }
 
 // Some processors look the cases up, others compute them.

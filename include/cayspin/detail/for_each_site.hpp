@@ -158,4 +158,39 @@ void for_each_site(Exec const& exec, std::string const& label, RowLayout const& 
   for_each_site<Real>(exec, label, layout, functor, layout.all());
 }
 
+/// Host loop that visits all sites of a pack's columns before those of the next pack.
+template <class Real, class Functor>
+struct ColumnLoop {
+  Functor functor;
+  RowLayout layout;
+  std::int64_t packs_of_task;
+
+  /// Each task is large enough to hide the cost of starting it.
+  ColumnLoop(Functor const& of_site, RowLayout const& rows)
+      : functor(of_site), layout(rows), packs_of_task(1 + 512 / (rows.rows() * host_lanes<Real>)) {}
+  std::int64_t tasks() const {
+    return (pack_count<Real>(layout) + packs_of_task - 1) / packs_of_task;
+  }
+
+  CAYSPIN_DETAIL_NOINLINE void operator()(std::int64_t task) const {
+    Functor local = functor;
+    auto const end = std::min<std::int64_t>((task + 1) * packs_of_task, pack_count<Real>(layout));
+    for (std::int64_t pack = task * packs_of_task; pack < end; ++pack)
+      for (std::int32_t z = 0; z < layout.nz; ++z)
+        for (std::int32_t y = 0; y < layout.ny; ++y)
+          local(Site<Pack<Real>>(Row(layout, y, z), pack * host_lanes<Real>));
+    streaming_fence();
+  }
+};
+
+/// Like for_each_site, only on hosts, for functors that are faster along columns, the sites with
+/// equal x.
+template <class Real, class Exec, class Functor>
+void for_each_site_by_columns(Exec const& exec, std::string const& label, RowLayout const& layout,
+                              Functor const& functor) {
+  static_assert(is_host_execution<Exec>, "Device threads have one site each.");
+  ColumnLoop<Real, Functor> const loop(functor, layout);
+  for_each_task(exec, label, loop.tasks(), layout.sites(), loop);
+}
+
 }  // namespace cayspin::inline v0_2::detail

@@ -131,8 +131,9 @@ KOKKOS_FORCEINLINE_FUNCTION void encrypt(PhiloxKeys const& keys, Philox<Lanes>& 
 }
 
 /// Turns counters into random words, with keys first_key, first_key + 1, .. in the lanes.
-template <int Lanes>
-KOKKOS_FORCEINLINE_FUNCTION void encrypt_with_keys(std::uint64_t first_key, Philox<Lanes>& random) {
+template <int Lanes, class... Others>
+KOKKOS_FORCEINLINE_FUNCTION void encrypt_with_keys(std::uint64_t first_key, Philox<Lanes>& random,
+                                                   Others&... others) {
   using Words = typename Philox<Lanes>::Words;
   Words keys{};
   if constexpr (Lanes == 1) {
@@ -145,6 +146,7 @@ KOKKOS_FORCEINLINE_FUNCTION void encrypt_with_keys(std::uint64_t first_key, Phil
   Words key[2] = {keys & low_half, keys >> 32U};
   for (int round = 0; round < PhiloxKeys::rounds; ++round) {
     random.round(key);
+    (others.round(key), ...);
     key[0] = (key[0] + PhiloxKeys::step_0) & low_half;
     key[1] = (key[1] + PhiloxKeys::step_1) & low_half;
   }

@@ -10,6 +10,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
+template <bool OnHost>
 class RandomBitsOfColumns;
 
 /// 16 random bits for each place, by Philox. A place is a number, for example that of a site; eight
@@ -17,6 +18,7 @@ class RandomBitsOfColumns;
 /// others in a register. Devices draw for one place at a time.
 template <bool OnHost>
 class RandomBits {
+  template <bool>
   friend class RandomBitsOfColumns;
 
  public:
@@ -116,7 +118,10 @@ class RandomBits {
 };
 
 /// Random bits for lattices that are stored side by side, one lattice per column: at each place,
-/// column c gets the bits that a RandomBits with seed + c has there.
+/// column c gets the bits that a RandomBits with seed + c has there. `Keeps`, only on hosts: keeps
+/// the words that a register of columns drew last for each counter, because eight places share
+/// them. A loop should then visit all places of a register's columns before those of the next one.
+template <bool Keeps>
 class RandomBitsOfColumns {
  public:
   RandomBitsOfColumns() = default;
@@ -126,32 +131,63 @@ class RandomBitsOfColumns {
   KOKKOS_FORCEINLINE_FUNCTION typename LanesOf<Number, Lanes>::type get(std::uint64_t column,
                                                                         std::uint64_t place) const {
     constexpr int together = Lanes == 1 ? 1 : lanes;
-    static_assert(Lanes % together == 0);
+    static_assert(Lanes % together == 0 && Lanes / together <= most_registers);
     typename LanesOf<Number, Lanes>::type found;
     for (int lane = 0; lane < Lanes; lane += together) {
-      auto const some = numbers<Number, together>(column + static_cast<std::uint64_t>(lane), place);
+      auto const some = numbers<Number, together>(column + static_cast<std::uint64_t>(lane), place,
+                                                  lane / together);
       std::memcpy(reinterpret_cast<Number*>(&found) + lane, &some, sizeof some);
     }
     return found;
   }
 
  private:
-  static constexpr int lanes = host_lanes<double>;
+  using Bits = RandomBits<false>;
+  static constexpr int lanes = host_lanes<double>, most_registers = 2;
 
   template <class Number, int Lanes>
-  KOKKOS_FORCEINLINE_FUNCTION typename LanesOf<Number, Lanes>::type numbers(
-      std::uint64_t column, std::uint64_t place) const {
-    using Bits = RandomBits<false>;
-    auto random = Philox<Lanes>::with_equal_counters(Bits::counter_of(place), draw_);
-    encrypt_with_keys(seed_ + column, random);
-    typename Philox<Lanes>::Words const bits = Bits::bits_of(place, random);
-    if constexpr (Lanes == 1)
+  KOKKOS_FORCEINLINE_FUNCTION typename LanesOf<Number, Lanes>::type numbers(std::uint64_t column,
+                                                                            std::uint64_t place,
+                                                                            int number) const {
+    std::uint64_t const counter = Bits::counter_of(place);
+    if constexpr (Keeps && Lanes > 1) {
+      auto& kept = kept_.of[number][counter % Bits::counters / 2];
+      if (kept.column != column || kept.counter != counter / 2) draw(kept, column, counter / 2);
+      return numbers_of<Number>(Bits::bits_of(place, kept.random[counter % 2]));
+    } else {
+      auto random = Philox<Lanes>::with_equal_counters(counter, draw_);
+      encrypt_with_keys(seed_ + column, random);
+      return numbers_of<Number>(Bits::bits_of(place, random));
+    }
+  }
+  template <class Number, class Words>
+  KOKKOS_FORCEINLINE_FUNCTION static auto numbers_of(Words const& bits) {
+    if constexpr (std::is_integral_v<Words>)
       return static_cast<Number>(bits);
     else
-      return __builtin_convertvector(bits, typename LanesOf<Number, Lanes>::type);
+      return __builtin_convertvector(
+          bits, typename LanesOf<Number, sizeof(Words) / sizeof(std::uint64_t)>::type);
+  }
+
+  /// Words of a register of columns, for two counters.
+  struct Kept {
+    std::uint64_t column = ~std::uint64_t{0}, counter = 0;  // `counter`: half of the two
+    Philox<lanes> random[2] = {{0, 0}, {0, 0}};
+  };
+  struct AllKept {
+    Kept of[most_registers][Bits::counters / 2];
+  };
+  struct Nothing {};
+
+  void draw(Kept& kept, std::uint64_t column, std::uint64_t half) const {
+    auto even = Philox<lanes>::with_equal_counters(2 * half, draw_),
+         odd = Philox<lanes>::with_equal_counters(2 * half + 1, draw_);
+    encrypt_with_keys(seed_ + column, even, odd);
+    kept = {column, half, {even, odd}};
   }
 
   std::uint64_t seed_ = 0, draw_ = 0;
+  mutable std::conditional_t<Keeps, AllKept, Nothing> kept_;
 };
 
 /// Random bits for replicas: replica r gets the bits of a RandomBits with the seed seed + r.

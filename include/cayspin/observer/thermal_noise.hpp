@@ -238,6 +238,7 @@ class ThermalNoise {
     return {found, static_cast<std::int64_t>(stride)};
   }
 
+  static constexpr char const* label = "cayspin::ThermalNoise";
   template <class Exec>
   static constexpr bool on_host = detail::is_host_execution<Exec>;
   template <class Exec>
@@ -249,32 +250,45 @@ class ThermalNoise {
   void run(Exec const& exec, std::int64_t step, bool after, bool before, Spins const& spins,
            TurnsOfSites const& turns) const {
     if (options_.columns_are_replicas) {
-      auto const& shape = lattice_.shape;
-      run_with(
-          exec, after, before, spins, turns,
-          detail::NumbersOfColumns{{options_.seed, static_cast<std::uint64_t>(step)},
-                                   detail::NumbersOfSites<on_host<Exec>>::places_of_row(shape[1])});
+      bool const shares_words = on_host<Exec> && spins.layout().rows() > 1;
+      if (shares_words)
+        run_of_columns<on_host<Exec>>(exec, step, after, before, spins, turns);
+      else
+        run_of_columns<false>(exec, step, after, before, spins, turns);
       return;
     }
     using Numbers = detail::NumbersOfSites<on_host<Exec>>;
     auto const& all = whole(lattice_);
     auto const begin = lattice_.part ? lattice_.part->begin() : std::array<std::int64_t, 3>{};
-    run_with(exec, after, before, spins, turns,
-             Numbers{{options_.seed, static_cast<std::uint64_t>(step)},
-                     begin[1],
-                     begin[2],
-                     all.shape[1],
-                     all.shape[2],
-                     Numbers::places_of_row(all.shape[0]),
-                     spins.layout().has_replicas() ? spins.layout().replica_planes : 0});
-  }
-  template <class Exec, class Turns, class Numbers>
-  static void run_with(Exec const& exec, bool after, bool before, Spins const& spins,
-                       Turns const& turns, Numbers const& numbers) {
     detail::for_each_site<Real>(
-        exec, "cayspin::ThermalNoise", spins.layout(),
-        detail::TurnAtRandom<Real, Turns, Numbers>{spins.array(), spins.output(false), numbers,
-                                                   turns, after, before});
+        exec, label, spins.layout(),
+        detail::TurnAtRandom<Real, TurnsOfSites, Numbers>{
+            spins.array(),
+            spins.output(false),
+            {{options_.seed, static_cast<std::uint64_t>(step)},
+             begin[1],
+             begin[2],
+             all.shape[1],
+             all.shape[2],
+             Numbers::places_of_row(all.shape[0]),
+             spins.layout().has_replicas() ? spins.layout().replica_planes : 0},
+            turns,
+            after,
+            before});
+  }
+
+  template <bool Keeps, class Exec, class TurnsOfColumns>
+  void run_of_columns(Exec const& exec, std::int64_t step, bool after, bool before,
+                      Spins const& spins, TurnsOfColumns const& turns) const {
+    using Numbers = detail::NumbersOfColumns<Keeps>;
+    Numbers const numbers{{options_.seed, static_cast<std::uint64_t>(step)},
+                          detail::NumbersOfSites<on_host<Exec>>::places_of_row(lattice_.shape[1])};
+    detail::TurnAtRandom<Real, TurnsOfColumns, Numbers> const turn{
+        spins.array(), spins.output(false), numbers, turns, after, before};
+    if constexpr (Keeps)
+      detail::for_each_site_by_columns<Real>(exec, label, spins.layout(), turn);
+    else
+      detail::for_each_site<Real>(exec, label, spins.layout(), turn);
   }
 
   /// Observer for the selected halves between steps.

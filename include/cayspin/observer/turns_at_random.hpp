@@ -199,8 +199,9 @@ struct NumbersOfSites {
 };
 
 /// Random numbers for columns; each column is a lattice whose rows are along y.
+template <bool Keeps>
 struct NumbersOfColumns {
-  RandomBitsOfColumns random;
+  RandomBitsOfColumns<Keeps> random;
   std::uint64_t places;  // in a row of such a lattice
 
   template <class Bits, class Site>
