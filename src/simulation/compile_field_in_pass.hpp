@@ -131,6 +131,7 @@ auto FieldInPass<Spins>::Terms::in_stages(SceneFieldNow<Real> const& usual, doub
   auto const factors = factors_at(t);
   auto now = usual;
   now.lattice_terms = in_time_ ? lattice_terms_at(factors, seen) : seen_;
+  now.couples_along_x = now.lattice_terms.couples_along_x();
   auto const axes = QuadraticTerms().with(site.quadratic, factors.anisotropy);
   now.quadratic = usual.quadratic.with(axes, seen);
   now.zeeman.applied = site.gyromagnetic * usual.zeeman.applied;

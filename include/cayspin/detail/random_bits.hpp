@@ -10,7 +10,7 @@
 
 namespace cayspin::inline v0_2::detail {
 
-template <bool OnHost>
+template <bool Keeps>
 class RandomBitsOfColumns;
 
 /// 16 random bits for each place, by Philox. A place is a number, for example that of a site; eight
