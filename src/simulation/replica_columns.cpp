@@ -68,37 +68,28 @@ bool can_differ(io::Scene const& one, io::Columns const& values) {
   return !one.integrator.method->differentiates_field && !(differ_in_field && io::needs_pass(one));
 }
 
-constexpr std::int64_t lanes = 16;  // a register has at most this many
-
 std::int64_t parts_of(std::int64_t all, std::int64_t part) { return (all + part - 1) / part; }
 
-// Returns how many columns a lattice may have if its kernels are to stay on one thread.
-std::int64_t columns_on_a_thread(std::int64_t sites) {
-  return cayspin::detail::calling_thread_sites / sites / lanes * lanes;
-}
-
-// Returns the columns of each of several threads that share a lattice: few enough that the fields
-// of a stage fit into the cache of a core, but enough that rows are not short.
-std::int64_t columns_in_cache(std::int64_t sites, Precision precision) {
+// Returns the first replica of each lattice of columns on a host, where each thread steps lattices
+// of its own. The fields of a step fit into the cache of a core if that leaves long rows. Returns
+// none if separate runs of the replicas are faster.
+std::vector<std::int64_t> first_columns(std::int64_t replicas, std::int64_t sites, int threads,
+                                        Precision precision) {
   std::int64_t const number = precision == Precision::double_precision ? 8 : 4;
-  constexpr std::int64_t fields = 4, long_row_bytes = 512;
+  std::int64_t const lanes = 64 / number;  // a register has at most this many
+  constexpr std::int64_t fields_of_step = 6, usual_sites = 2048, many_sites = 64;
   auto const cache = static_cast<std::int64_t>(cayspin::detail::core_cache_bytes());
-  return std::clamp(cache / (fields * 3 * number * sites) / lanes * lanes, 2 * lanes,
-                    long_row_bytes / number);
-}
-
-// Returns how many columns each lattice gets on a host, or nothing if separate runs of the replicas
-// are faster. The kernels of a lattice stay on one thread if that leaves long rows, and each thread
-// then has a lattice; otherwise the threads share each lattice.
-std::optional<std::int64_t> columns_of_a_lattice(std::int64_t replicas, std::int64_t sites,
-                                                 int threads, Precision precision) {
-  auto const on_a_thread = columns_on_a_thread(sites);
-  auto const each = parts_of(parts_of(replicas, threads), lanes) * lanes;
-  if (on_a_thread >= 2 * lanes)
-    return std::min(replicas, std::max(2 * lanes, std::min(on_a_thread, each)));
-  if (threads > 1 && each < 2 * lanes) return std::nullopt;  // waiting for threads takes longer
-  auto const lattices = parts_of(replicas, threads * columns_in_cache(sites, precision));
-  return std::min(replicas, parts_of(parts_of(replicas, lattices), lanes) * lanes);
+  auto const packs = parts_of(replicas, lanes);
+  auto const most =
+      std::clamp<std::int64_t>(cache / (fields_of_step * 3 * number * sites) / lanes, 2,
+                               std::max<std::int64_t>(8, usual_sites / sites / lanes));
+  bool const few = packs < 2 * threads;
+  if (few && threads > 1 && sites > many_sites) return {};
+  auto const lattices = few ? parts_of(packs, 2) : threads * parts_of(packs, threads * most);
+  std::vector<std::int64_t> first;
+  for (std::int64_t lattice = 0; lattice < lattices; ++lattice)
+    first.push_back(lattice * packs / lattices * lanes);
+  return first;
 }
 
 // `values`: those of the columns.
@@ -186,26 +177,26 @@ std::optional<ReplicaColumns> ReplicaColumns::open(io::Scene const& scene, io::S
   if (!values || !can_differ(one, *values)) return opened;
   auto sample = SceneRun::open(one, settings);
   bool const on_host = is_on_host(sample->space());
-  auto const on_lattice =
-      on_host ? columns_of_a_lattice(replicas, sites, sample->threads(), settings.precision)
-              : replicas;
-  if (!on_lattice) return opened;
-  auto const columns = *on_lattice;
-  auto const scene_from = [&](std::int64_t begin) {
-    std::int64_t const count = std::min(columns, replicas - begin);
+  auto begins = on_host ? first_columns(replicas, sites, sample->threads(), settings.precision)
+                        : std::vector<std::int64_t>{0};
+  if (begins.empty()) return opened;
+  auto const lattices = static_cast<std::int64_t>(begins.size());
+  begins.push_back(replicas);
+  auto const scene_from = [&](std::int64_t begin, std::int64_t count) {
     return scene_of_columns(one, begin, values->part(begin, count), count);
   };
-  auto const of_lattice = make_plan(scene_from(0), settings.precision).memory.total() +
+  auto const columns = parts_of(replicas, lattices);
+  auto const of_lattice = make_plan(scene_from(0, columns), settings.precision).memory.total() +
                           2 * bytes_of_open_run +  // the columns, and a replica for samples
                           columns * bytes_of_column;
-  auto const lattices = parts_of(share.on_this_machine, columns);
-  require_memory_of_replicas(scene, static_cast<double>(lattices) * static_cast<double>(of_lattice),
+  auto const on_this_machine = static_cast<double>(parts_of(share.on_this_machine, columns));
+  require_memory_of_replicas(scene, on_this_machine * static_cast<double>(of_lattice),
                              share.available);
   opened.emplace();
   opened->values_ = *values;
-  for (std::int64_t begin = 0; begin < replicas; begin += columns) {
-    std::int64_t const count = std::min(columns, replicas - begin);
-    auto run = SceneRun::open(scene_from(begin), settings);
+  for (std::size_t lattice = 0; lattice + 1 < begins.size(); ++lattice) {
+    auto const begin = begins[lattice], count = begins[lattice + 1] - begin;
+    auto run = SceneRun::open(scene_from(begin, count), settings);
     run->continue_from(0, starts_of(one, begin, count));
     auto of_one = sample ? std::move(sample) : SceneRun::open(one, settings);
     opened->groups_.push_back({begin, count, std::move(run), std::move(of_one)});
@@ -240,7 +231,7 @@ std::int64_t ReplicaColumns::furthest() const {
 ReplicaColumns::Ended ReplicaColumns::advance(std::int64_t target, Looks const& looks) {
   std::vector<SceneRun*> runs;
   for (auto const& group : groups_) runs.push_back(group.columns.get());
-  auto const outcomes = SceneRun::advance_all(runs, target, looks);
+  auto const outcomes = SceneRun::advance_all(runs, target, looks, SceneRun::SideBySide::all);
   Ended ended;
   for (std::size_t number = 0; number < outcomes.size(); ++number) {
     auto const& [advanced, error] = outcomes[number];

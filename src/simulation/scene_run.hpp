@@ -127,18 +127,20 @@ class SceneRun {
     Advanced advanced = Advanced::whole;
     std::exception_ptr error = {};  // what advance would have thrown
   };
-  /// Advances runs in the same space to step `target`, except those that are already there. On
-  /// hosts, small runs go side by side, one to a thread. If one is interrupted, or throws anything
-  /// but NumbersFailed, the others are interrupted too, and those that have not begun do not begin.
+  /// Which runs go side by side on a host, one to a thread.
+  enum class SideBySide { small, all };
+  /// Advances runs in the same space to step `target`, except those that are already there. If one
+  /// is interrupted, or throws anything but NumbersFailed, the others are interrupted too, and
+  /// those that have not begun do not begin.
   static std::vector<Outcome> advance_all(std::span<SceneRun* const> runs, std::int64_t target,
-                                          Looks const& looks);
+                                          Looks const& looks, SideBySide side = SideBySide::small);
 
   /// Result of relax_all for one run.
   struct Relaxed {
     Minimum minimum = {};
     std::exception_ptr error = {};  // what relax would have thrown
   };
-  /// Calls relax() of each of these runs, side by side as in advance_all. If one is interrupted, or
+  /// Calls relax() of each of these runs, small ones side by side. If one is interrupted, or
   /// throws anything but NumbersFailed, all that have not finished end as interrupted, even those
   /// that have not begun.
   static std::vector<Relaxed> relax_all(std::span<SceneRun* const> runs,
@@ -155,8 +157,7 @@ class SceneRun {
     std::int64_t first, count;
     io::Columns const* values;
   };
-  /// Returns a sample of each column of these runs. The runs are sampled side by side, as in
-  /// advance_all.
+  /// Returns a sample of each column of these runs. Small replicas are sampled side by side.
   static std::vector<std::vector<Sample>> sample_columns(std::span<ColumnsToSample const> all);
 
   /// Continues with changed keys, given as for `cayspin run --set`, from the current state. Steps
@@ -256,8 +257,8 @@ class SceneRun {
   int threads_ = 1;
 
  private:
-  /// Calls work(number) for each run, on several threads at once if the runs are small.
-  static void side_by_side(std::span<SceneRun* const> runs,
+  /// Calls work(number) for each run.
+  static void for_each_run(std::span<SceneRun* const> runs, SideBySide side,
                            std::function<void(std::size_t)> const& work);
   Minimum relaxed(RelaxSettings const& settings);
   Sample sampled(bool judges = false);

@@ -25,13 +25,14 @@ std::function<bool()> or_asked(std::atomic<bool>& interrupted, std::function<boo
 }  // namespace
 
 std::vector<SceneRun::Outcome> SceneRun::advance_all(std::span<SceneRun* const> runs,
-                                                     std::int64_t target, Looks const& looks) {
+                                                     std::int64_t target, Looks const& looks,
+                                                     SideBySide side) {
   Turn const turn;
   std::vector<Outcome> outcomes(runs.size());
   std::atomic<bool> interrupted = false;
   auto asking = looks;
   asking.interrupted = or_asked(interrupted, looks.interrupted);
-  side_by_side(runs, [&](std::size_t number) {
+  for_each_run(runs, side, [&](std::size_t number) {
     auto& [advanced, error] = outcomes[number];
     auto& run = *runs[number];
     if (asking.interrupted()) {
@@ -82,7 +83,7 @@ std::vector<SceneRun::Relaxed> SceneRun::relax_all(std::span<SceneRun* const> ru
     if (minimum.end == MinimizeEnd::interrupted) interrupted = true;
   };
   if (!frees_memory) {
-    side_by_side(runs, relax_one);
+    for_each_run(runs, SideBySide::small, relax_one);
     return all;
   }
   for (std::size_t number = 0; number < runs.size(); ++number) {
@@ -92,15 +93,16 @@ std::vector<SceneRun::Relaxed> SceneRun::relax_all(std::span<SceneRun* const> ru
   return all;
 }
 
-void SceneRun::side_by_side(std::span<SceneRun* const> runs,
+void SceneRun::for_each_run(std::span<SceneRun* const> runs, SideBySide side,
                             std::function<void(std::size_t)> const& work) {
   std::int64_t sites = 0;
   for (auto const* const run : runs) sites = std::max(sites, run->plan().lattice.sites());
   if (runs.empty()) return;
-  for_each_small_run(runs.front()->space_, sites, runs.size(), [&](std::size_t number) {
-    Turn::Work const of_the_turn;
-    work(number);
-  });
+  simulation::for_each_run(runs.front()->space_, sites, side == SideBySide::all, runs.size(),
+                           [&](std::size_t number) {
+                             Turn::Work const of_the_turn;
+                             work(number);
+                           });
 }
 
 std::vector<std::vector<Sample>> SceneRun::sample_columns(std::span<ColumnsToSample const> all) {
@@ -108,7 +110,7 @@ std::vector<std::vector<Sample>> SceneRun::sample_columns(std::span<ColumnsToSam
   std::vector<std::vector<Sample>> samples(all.size());
   std::vector<SceneRun*> ones;
   for (auto const& columns : all) ones.push_back(columns.one);
-  side_by_side(ones, [&](std::size_t number) {
+  for_each_run(ones, SideBySide::small, [&](std::size_t number) {
     auto const& [columns, one, first, count, values] = all[number];
     bool const differ = !values->applied.empty() || !values->constants.empty();
     for (std::int64_t column = 0; column < count; ++column) {

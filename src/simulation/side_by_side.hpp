@@ -16,19 +16,22 @@ namespace cayspin::simulation {
 template <class Work>
 struct WorkByNumber {
   Work const& work;
-  void operator()(std::int64_t number) const { work(static_cast<std::size_t>(number)); }
+  void operator()(std::int64_t number) const {
+    cayspin::detail::KernelsStayOnThread const stay;
+    work(static_cast<std::size_t>(number));
+  }
 };
 
 /// Calls work(0) .. work(count - 1), each of which uses a run of at most `sites` sites in `space`.
-/// If the kernels of such runs stay on the calling thread, the calls are spread over the
-/// threads of the host; otherwise they follow one another.
+/// On a host the calls are spread over its threads if `always`, or if the kernels of such runs stay
+/// on the calling thread anyway. Otherwise they follow one another.
 template <class Work>
-void for_each_small_run(std::string const& space, std::int64_t sites, std::size_t count,
-                        Work const& work) {
+void for_each_run(std::string const& space, std::int64_t sites, bool always, std::size_t count,
+                  Work const& work) {
   using Host = Kokkos::DefaultHostExecutionSpace;
   Host const host;
   if (count > 1 && is_on_host(space) && host.concurrency() > 1 &&
-      cayspin::detail::runs_on_calling_thread<Host>(sites)) {
+      (always || cayspin::detail::runs_on_calling_thread<Host>(sites))) {
     // Uses another instance of the execution space. The runs fence the default instance, and a
     // kernel on that instance would keep it locked.
     auto const other = Kokkos::Experimental::partition_space(host, 1).front();

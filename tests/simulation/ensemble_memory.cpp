@@ -10,10 +10,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace cayspin::simulation::test {
 namespace {
@@ -70,37 +72,46 @@ TEST(EnsembleMemory, OfColumnsIsNotThatOfSeparateRuns) {
   EXPECT_NO_THROW(EnsembleRun(scene, {}, false, share));
 }
 
-// Chains of 64 spins are stepped as lattices of 32 columns. Each of these is an open run, and has
-// another one for samples.
+// Chains are stepped as lattices of columns, how many depends on the machine. Each of these is an
+// open run, and has another one for samples.
 TEST(EnsembleMemory, OfColumnsCountsTheirRuns) {
-  constexpr std::int64_t lattices = 20;
+  constexpr std::int64_t replicas = 640;
   std::string const field = "[field]\nexchange = 1.0\n[initial]\nrandom = { seed = 7 }\n";
-  auto const scene = llg_scene("0.1", "rkmk4", 4,
-                               "[lattice]\nshape = [64]\n" + field +
-                                   fmt::format("[ensemble]\nreplicas = {}\n", 32 * lattices));
+  auto const scene = llg_scene(
+      "0.1", "rkmk4", 4,
+      "[lattice]\nshape = [64]\n" + field + fmt::format("[ensemble]\nreplicas = {}\n", replicas));
   if (!is_on_host(SceneRun::open(io::replica_of(scene, 0), {})->space()))
     GTEST_SKIP() << "on a device, one lattice has all columns";
-  auto const of_lattice =
-      make_plan(llg_scene("0.1", "rkmk4", 4, "[lattice]\nshape = [32, 64]\n" + field),
-                Precision::double_precision)
-          .memory.total();
-  auto share = all_replicas(scene);
-  share.available = lattices * (of_lattice + bytes_of_open_run);
-  try {
-    EnsembleRun const run(scene, {}, false, share);
-    ADD_FAILURE() << "lattices that do not fit";
-  } catch (io::SceneError const& error) {
-    // The message is about all lattices, each of which has two runs and 32 columns.
-    auto const needed = lattices * (of_lattice + 2 * bytes_of_open_run + 32 * bytes_of_column);
-    EXPECT_NE(std::string_view(error.what())
-                  .find(fmt::format("ensemble.replicas: the run needs {} of memory, and {} is "
-                                    "available; accepted: fewer replicas",
-                                    bytes_text(needed), bytes_text(share.available.value()))),
-              std::string_view::npos)
-        << error.what();
-  }
-  share.available = lattices * (of_lattice + 3 * bytes_of_open_run);
-  EXPECT_NO_THROW(EnsembleRun(scene, {}, false, share));
+  auto const refusal = [&](std::int64_t available) {
+    auto share = all_replicas(scene);
+    share.available = available;
+    try {
+      EnsembleRun const run(scene, {}, false, share);
+    } catch (io::SceneError const& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  auto const needed_by = [&](std::int64_t lattices) {
+    std::int64_t const columns = (replicas + lattices - 1) / lattices;
+    auto const lattice = fmt::format("[lattice]\nshape = [{}, 64]\n", columns);
+    auto const plan =
+        make_plan(llg_scene("0.1", "rkmk4", 4, lattice + field), Precision::double_precision);
+    return lattices * (plan.memory.total() + 2 * bytes_of_open_run + columns * bytes_of_column);
+  };
+  constexpr std::int64_t too_little = 1'000'000;
+  auto const text = refusal(too_little);
+  std::vector<std::int64_t> needed;
+  for (std::int64_t lattices = 1; lattices <= replicas / 16; ++lattices)
+    if (text.find(fmt::format("ensemble.replicas: the run needs {} of memory, and {} is "
+                              "available; accepted: fewer replicas",
+                              bytes_text(needed_by(lattices)), bytes_text(too_little))) !=
+        std::string::npos)
+      needed.push_back(needed_by(lattices));
+  ASSERT_FALSE(needed.empty()) << text;
+  auto const [least, most] = std::ranges::minmax(needed);
+  EXPECT_EQ(refusal(most), "");
+  EXPECT_NE(refusal(least - 1), "");
 }
 
 #if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)

@@ -45,10 +45,26 @@ inline constexpr bool is_synchronous =
 #endif
     false;
 
+/// While an object exists, synchronous host spaces run all kernels of the thread that made it on
+/// that thread, for callers that give each thread a field of its own.
+class KernelsStayOnThread {
+ public:
+  KernelsStayOnThread() : before_(stay_) { stay_ = true; }
+  ~KernelsStayOnThread() { stay_ = before_; }
+  KernelsStayOnThread(KernelsStayOnThread const&) = delete;
+  KernelsStayOnThread& operator=(KernelsStayOnThread const&) = delete;
+
+  static bool here() { return stay_; }
+
+ private:
+  static inline thread_local constinit bool stay_ = false;
+  bool before_;
+};
+
 /// Returns true if a kernel over this many sites runs on the calling thread.
 template <class Exec>
 bool runs_on_calling_thread(std::int64_t sites) {
-  return is_synchronous<Exec> && sites <= calling_thread_sites;
+  return is_synchronous<Exec> && (sites <= calling_thread_sites || KernelsStayOnThread::here());
 }
 
 /// The execution space under which Kokkos' profiling tools see kernels that run on the calling
