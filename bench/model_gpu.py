@@ -29,6 +29,7 @@ INTEGERS = 64
 FIRST_CACHE = 128  # bytes a clock, per multiprocessor
 SECOND_CACHE = 5.5e12  # bytes a second: a cautious 60 % of 5120 bytes a clock
 LATENCY = 800e-9  # seconds that a site's loads take from a busy memory: twice those of an idle one
+LAUNCH = 2.5e-6  # seconds from one launch to the next
 REGISTERS, WARPS = 65536, 64  # per multiprocessor
 SECTOR = 32  # bytes: the smallest transfer of the second-level cache
 
@@ -39,6 +40,9 @@ WIDTH, HEIGHT, WALK = 32, 12, 32  # threads of a team and planes of its walk: Ti
 PAIRS = {
     "LieEulerInPairs": {"0+0": 6}, "LieHeunInPairs": {"0+1": 6}, "Rkmk4InPairs": {"0+1": 12, "2+3": 15},
     "StereographicHeunInPairs": {"0+1": 6}, "StereographicRk4InPairs": {"0+1": 9, "2+3": 12}}
+FILM = 64  # sites along an edge of a small film
+TILE = 16  # threads along an edge of its tiles: TilesOfSteps
+STAGES = {"Euler": 1, "Heun": 2, "RKMK4": 4, "Heun tangent": 2, "RKMK4 tangent": 4}
 METHODS = {  # for each method of the counts, the case of bench_throughput
     "LieEuler": "Euler", "LieHeun": "Heun", "Rkmk4": "RKMK4",
     "StereographicHeun": "Heun tangent", "StereographicRk4": "RKMK4 tangent",
@@ -62,6 +66,10 @@ class Kernel:
     @property
     def is_pair(self):
         return self.stage in PAIRS.get(self.method, ())
+
+    @property
+    def is_step_in_tiles(self):
+        return self.method.endswith("InTiles")
 
     @property
     def steps(self):
@@ -138,8 +146,12 @@ def seconds(kernel, bandwidth, edge):
     }
 
 
-def read_kernels():
+def read_all_kernels():
     return [Kernel(line) for line in COUNTS.read_text().splitlines() if not line.startswith("#")]
+
+
+def read_kernels():
+    return [kernel for kernel in read_all_kernels() if not kernel.is_step_in_tiles]
 
 
 def print_kernels(kernels, edge):
@@ -214,6 +226,46 @@ def print_replicas(kernels):
                 f"{time * 1e12:.1f} ({', '.join(names)})" for time, names in cells) + " |")
 
 
+def seconds_in_film(kernel, threads):
+    """Returns the seconds of a launch over a small film: at least those between launches, or the
+    loads of a thread and the instructions of the warps of a scheduler."""
+    warps = math.ceil(threads / LANES / SCHEDULERS / PROCESSORS)
+    return max(LAUNCH, LATENCY + warps * kernel.total / CLOCK)
+
+
+def film_steps(kernels):
+    """Returns {(precision, method): (steps a second of a film with a launch for each stage, with all
+    stages in one launch)}."""
+    found = {}
+    for kernel in kernels:
+        if kernel.is_pair:
+            continue
+        method = METHODS[kernel.method.removesuffix("InTiles")]
+        passes, tiles = found.get((kernel.precision, method), (0, None))
+        if kernel.is_step_in_tiles:
+            teams = math.ceil(FILM / (TILE - 2 * (STAGES[method] - 1))) ** 2
+            # Each team is on one multiprocessor.
+            tiles = seconds_in_film(kernel, math.ceil(teams / PROCESSORS) * PROCESSORS * TILE**2)
+        else:
+            passes += seconds_in_film(kernel, FILM**2)
+        found[kernel.precision, method] = passes, tiles
+    return {key: (1 / passes, 1 / tiles if tiles else None)
+            for key, (passes, tiles) in found.items()}
+
+
+def print_film(kernels):
+    print(f"\nsteps a second of a film of {FILM} x {FILM} spins, at most: with a launch for each "
+          "stage, and in one launch\n")
+    print("| | " + " | ".join(f"{precision} {way}" for precision in SIZE
+                              for way in ("stages", "one launch")) + " |")
+    print("|---" * (1 + 2 * len(SIZE)) + "|")
+    found = film_steps(kernels)
+    for method in STAGES:
+        rates = [rate for precision in SIZE for rate in found[precision, method]]
+        print(f"| {method} | " +
+              " | ".join("-" if rate is None else f"{rate:.2g}" for rate in rates) + " |")
+
+
 def card_of(context):
     """Returns the GPU that a benchmark ran on; without one, its execution space."""
     configuration = context.get("kokkos_configuration", "")
@@ -257,6 +309,7 @@ def main():
     print_kernels(kernels, arguments.edge)
     print_steps(kernels, arguments.edge)
     print_replicas(kernels)
+    print_film(read_all_kernels())
     if arguments.measured:
         print_measured(kernels, arguments.measured)
 

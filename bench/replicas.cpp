@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Nanoseconds per spin and step of small lattices: many replicas in one field, or a single lattice.
 // In the cases replicas/PRECISION METHOD/REPLICAS of SIZE, cayspin::integrate takes the steps, and
-// can take many in one launch. If "one by one" is added, each step is a call of step().
+// can take many in one launch. If "one by one" is added, each step is a call of step(). On a
+// device, "in pairs" takes all stages of a step of a film in one launch (PairedStages).
 #include "main.hpp"
 #include "scene.hpp"
+
+#include <cayspin/stepper/paired_stages.hpp>
 
 #include <cstdint>
 #include <string>
@@ -40,6 +43,7 @@ void add(std::string const& name) {
         scene::Size{Lattice::chain(100).with_replicas(1000), "1000 of 100"},
         scene::Size{Lattice::chain(1).with_replicas(100000), "100000 of 1"},
         scene::Size{Lattice::cubic(10, 10, 10), "1 of 10^3"},
+        scene::Size{Lattice::square(64, 64), "1 of 64^2"},
         scene::Size{Lattice::cubic(16, 16, 16), "1 of 16^3"}})
     for (bool const one_by_one : {false, true})
       scene::add(name + "/" + size + (one_by_one ? ", one by one" : ""),
@@ -53,6 +57,8 @@ void add_methods(std::string const& precision) {
   using Spins = cayspin::SpinField<Real>;
   add<cayspin::LieHeun<Spins>>("replicas/" + precision + " Heun");
   add<cayspin::Rkmk4<Spins>>("replicas/" + precision + " RKMK4");
+  add<cayspin::PairedStages<cayspin::LieHeun<Spins>>>("replicas/" + precision + " Heun in pairs");
+  add<cayspin::PairedStages<cayspin::Rkmk4<Spins>>>("replicas/" + precision + " RKMK4 in pairs");
 }
 
 }  // namespace

@@ -66,6 +66,15 @@ class Model(unittest.TestCase):
         expected = 140 / 64 / 132 / 1.755e-3
         self.assertIn(f"| Euler | {expected:.1f} (integers) |", text.getvalue())
 
+    def test_small_films(self):
+        # 49 teams of 256 threads: two warps for each scheduler
+        tiles = model_gpu.Kernel("f64_Rkmk4InTiles_all 4000 400 30 74 700 4 130 64")
+        stages = [model_gpu.Kernel(f"f64_Rkmk4_{stage} 300 100 27 0 70 6 7 48")
+                  for stage in range(4)]
+        passes, in_one = model_gpu.film_steps([*stages, tiles])["f64", "RKMK4"]
+        self.assertAlmostEqual(passes, 1e5, places=6)
+        self.assertAlmostEqual(in_one, 1 / (800e-9 + 8000 / 1.755e9), places=6)
+
     def test_a_branching_kernel_is_not_bound_by_memory(self):
         self.assertLess(share([BRANCHING], "f64", "Euler"), 0.8)
 

@@ -7,6 +7,8 @@
 #include <cayspin/stepper/paired_stages.hpp>
 
 #include <cmath>
+#include <cstdint>
+#include <random>
 
 namespace cayspin::test {
 namespace {
@@ -60,6 +62,12 @@ class Pairs : public ::testing::Test {
     expect_same<StereographicRungeKutta<Field, tableau::Classical4>>(on, generator, in_pairs);
   }
 
+  static auto stationary_generator_on(Lattice const& on) {
+    return LandauLifshitz(
+        EffectiveField(Exchange(on, 0.8), BulkDmi(on, 0.4), ZhangLi(on, {0.5, -0.3, 0.2}, 0.3),
+                       UniaxialAnisotropy(0.7, {1, 2, -2})),
+        0.1);
+  }
   static auto generator_on(Lattice const& on) {
     return LandauLifshitz(
         EffectiveField(Exchange(on, 0.8), BulkDmi(on, 0.4), ZhangLi(on, {0.5, -0.3, 0.2}, 0.3),
@@ -79,6 +87,33 @@ TYPED_TEST(Pairs, HaveTheBitsOfPasses) {
                          lattice_of({31, 12, 3}, {periodic, periodic, periodic}).with_replicas(4),
                          lattice_of({40, 13, 1}, {open, periodic, periodic}).with_replicas(3)})
     this->expect_same_of_each(on, this->generator_on(on), true);
+}
+
+// Films of up to two planes, and chains, take all stages of a step in one launch.
+TYPED_TEST(Pairs, OfSmallFilmsAndChainsHaveTheBitsOfPasses) {
+  for (auto const& on :
+       {lattice_of({64, 64, 1}, {periodic, periodic, open}),
+        lattice_of({29, 9, 1}, {open, open, open}), lattice_of({21, 10, 2}, {open, periodic, open}),
+        lattice_of({3, 2, 1}, {periodic, periodic, periodic}),
+        lattice_of({1, 23, 2}, {periodic, open, periodic}),
+        lattice_of({131, 1, 1}, {open, open, open}),
+        lattice_of({59, 1, 8}, {periodic, open, periodic}),
+        lattice_of({2, 1, 1}, {periodic, periodic, periodic}).with_replicas(5),
+        lattice_of({15, 17, 2}, {periodic, open, periodic}).with_replicas(3)})
+    this->expect_same_of_each(on, this->stationary_generator_on(on), true);
+}
+
+TYPED_TEST(Pairs, OfAnySmallFilmHaveTheBitsOfPasses) {
+  std::mt19937 random(3);
+  auto const up_to = [&](std::int64_t most) {
+    return 1 + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(most));
+  };
+  auto const end = [&] { return up_to(2) == 1 ? open : periodic; };
+  for (int film = 0; film < 12; ++film) {
+    std::array const shape{up_to(80), up_to(40), up_to(2)};
+    auto const on = lattice_of(shape, {end(), end(), end()}).with_replicas(up_to(3));
+    this->expect_same_of_each(on, this->stationary_generator_on(on), true);
+  }
 }
 
 // With one stage, pairs are steps, in batches.

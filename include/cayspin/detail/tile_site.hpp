@@ -39,7 +39,7 @@ struct KeptOutput {
 template <class First, class Second>
 struct TwoOutputs {
   First first;
-  Second const& second;
+  Second second;
   bool both;
 };
 

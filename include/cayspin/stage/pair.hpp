@@ -25,8 +25,8 @@ namespace cayspin::inline v0_2::detail {
 template <class Flow, class Real>
 struct ArraysOfFirst : DeviceArrays<Flow, Real> {
   using Fields = DeviceArrays<Flow, Real>;
-  TwoOutputs<ScratchOutput<Real>, ComponentPointers<Real>> next;
-  TwoOutputs<KeptOutput<Real>, decltype(Fields::increment)> increment;
+  TwoOutputs<ScratchOutput<Real>, ComponentPointers<Real> const&> next;
+  TwoOutputs<KeptOutput<Real>, decltype(Fields::increment) const&> increment;
 };
 
 /// The arrays of the second stage of a pair.

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cayspin/stage/pair.hpp>
+#include <cayspin/stage/step_in_tiles.hpp>
 #include <cayspin/stepper/runge_kutta.hpp>
 
+#include <cstdint>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -12,10 +15,10 @@ namespace cayspin::inline v0_2 {
 /// A chain of two or four stages, for example PairedStages<Rkmk4<Spins>>, that takes two stages at
 /// a time in one pass over the lattice if the spins are on a device: the spins between the two stay
 /// in the scratch memory of the device's teams. A step then moves less memory, and the result is
-/// bitwise identical. With one stage, as in LieEuler, it takes two steps at a time, where
-/// integrate() takes batches. On host spaces, for which RungeKutta has sweeps, on narrow lattices
-/// and on parts, and for generators that need all spins of a stage beforehand, it takes the steps
-/// of Stepper.
+/// bitwise identical. Small films and chains take all stages of a step in one launch. With one
+/// stage, as in LieEuler, it takes two steps at a time, where integrate() takes batches. On host
+/// spaces, for which RungeKutta has sweeps, on other narrow lattices and on parts, and for
+/// generators that need all spins of a stage beforehand, it takes the steps of Stepper.
 template <class Stepper>
   requires requires {
     typename Stepper::tableau_type;
@@ -49,11 +52,17 @@ class PairedStages
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     if constexpr (pairs_stages<Exec>) {
       using Isotropy = typename Stepper::isotropy_type;
-      if (detail::has_pairs<Exec, Real>(spins.layout()) &&
-          detail::stages_need_only_time<Isotropy>(generator, exec, spins)) {
+      auto const& layout = spins.layout();
+      bool const in_tiles = detail::has_steps_in_tiles<Exec, Real>(layout, Tableau::stages) &&
+                            detail::is_stationary(generator, exec, spins);
+      bool const in_pairs = detail::has_pairs<Exec, Real>(layout) &&
+                            detail::stages_need_only_time<Isotropy>(generator, exec, spins);
+      if (in_tiles || in_pairs) {
         auto const region = this->begin_step(exec, spins);
         this->require_other_memory(spins, memory_.end());
-        if (pairs_from<0>(exec, generator, spins, t, dt)) return swap(spins, memory_.end());
+        if ((in_tiles && step_in_tiles(exec, generator, spins, t, dt)) ||
+            (in_pairs && pairs_from<0>(exec, generator, spins, t, dt)))
+          return swap(spins, memory_.end());
       }
     }
     Base::step(exec, generator, spins, t, dt);
@@ -110,6 +119,15 @@ class PairedStages
         fields);
   }
 
+  template <class Exec, class Generator>
+  bool step_in_tiles(Exec const& exec, Generator const& generator, Spins const& spins, double t,
+                     double dt) {
+    return [&]<int... Stage>(std::integer_sequence<int, Stage...>) {
+      return detail::run_step_in_tiles(exec, all_label_, spins.layout(),
+                                       stage<Stage>(exec, generator, spins, t, dt)...);
+    }(std::make_integer_sequence<int, Tableau::stages>{});
+  }
+
   template <int Stage, class Exec, class Generator>
   bool pairs_from(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                   double dt) {
@@ -121,6 +139,8 @@ class PairedStages
     }
     return true;
   }
+
+  std::string all_label_ = this->label("::all_stages");
 };
 
 }  // namespace cayspin::inline v0_2
