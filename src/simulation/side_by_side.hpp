@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace cayspin::simulation {
@@ -23,14 +24,15 @@ struct WorkByNumber {
 };
 
 /// Calls work(0) .. work(count - 1), each of which uses a run of at most `sites` sites in `space`.
-/// On a host the calls are spread over its threads if `always`, or if the kernels of such runs stay
-/// on the calling thread anyway. Otherwise they follow one another.
+/// On a host the calls are spread over its threads, and the kernels of a run stay on its thread, if
+/// `always`, or if kernels over so few sites do so anyway. Otherwise the calls follow one another.
 template <class Work>
 void for_each_run(std::string const& space, std::int64_t sites, bool always, std::size_t count,
                   Work const& work) {
   using Host = Kokkos::DefaultHostExecutionSpace;
   Host const host;
-  if (count > 1 && is_on_host(space) && host.concurrency() > 1 &&
+  bool const has_one_thread = host.concurrency() == 1;
+  if (count > 1 && is_on_host(space) && !has_one_thread &&
       (always || cayspin::detail::runs_on_calling_thread<Host>(sites))) {
     // Uses another instance of the execution space. The runs fence the default instance, and a
     // kernel on that instance would keep it locked.
@@ -42,6 +44,8 @@ void for_each_run(std::string const& space, std::int64_t sites, bool always, std
                          WorkByNumber<Work>{work});
     return;
   }
+  std::optional<cayspin::detail::KernelsStayOnThread> stay;
+  if (has_one_thread) stay.emplace();
   for (std::size_t number = 0; number < count; ++number) work(number);
 }
 

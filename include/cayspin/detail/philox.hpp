@@ -142,13 +142,12 @@ KOKKOS_FORCEINLINE_FUNCTION void encrypt_with_keys(std::uint64_t first_key, Phil
     for (int lane = 0; lane < Lanes; ++lane) keys[lane] = static_cast<std::uint64_t>(lane);
     keys += first_key;
   }
-  constexpr std::uint64_t low_half = 0xFFFFFFFF;
-  Words key[2] = {keys & low_half, keys >> 32U};
+  Words key[2] = {keys, keys >> 32U};
   for (int round = 0; round < PhiloxKeys::rounds; ++round) {
     random.round(key);
     (others.round(key), ...);
-    key[0] = (key[0] + PhiloxKeys::step_0) & low_half;
-    key[1] = (key[1] + PhiloxKeys::step_1) & low_half;
+    key[0] += PhiloxKeys::step_0;
+    key[1] += PhiloxKeys::step_1;
   }
 }
 

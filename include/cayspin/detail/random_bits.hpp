@@ -131,33 +131,31 @@ class RandomBitsOfColumns {
   KOKKOS_FORCEINLINE_FUNCTION typename LanesOf<Number, Lanes>::type get(std::uint64_t column,
                                                                         std::uint64_t place) const {
     constexpr int together = Lanes == 1 ? 1 : lanes;
-    static_assert(Lanes % together == 0 && Lanes / together <= most_registers);
-    typename LanesOf<Number, Lanes>::type found;
-    for (int lane = 0; lane < Lanes; lane += together) {
-      auto const some = numbers<Number, together>(column + static_cast<std::uint64_t>(lane), place,
-                                                  lane / together);
-      std::memcpy(reinterpret_cast<Number*>(&found) + lane, &some, sizeof some);
-    }
-    return found;
+    static_assert(Lanes == together || Lanes == most_registers * together);
+    auto const first = words<together>(column, place, 0);
+    if constexpr (Lanes == together)
+      return numbers_of<Number>(first);
+    else
+      return both<Number>(first, words<together>(column + lanes, place, 1));
   }
 
  private:
   using Bits = RandomBits<false>;
   static constexpr int lanes = host_lanes<double>, most_registers = 2;
 
-  template <class Number, int Lanes>
-  KOKKOS_FORCEINLINE_FUNCTION typename LanesOf<Number, Lanes>::type numbers(std::uint64_t column,
-                                                                            std::uint64_t place,
-                                                                            int number) const {
+  template <int Lanes>
+  KOKKOS_FORCEINLINE_FUNCTION typename Philox<Lanes>::Words words(std::uint64_t column,
+                                                                  std::uint64_t place,
+                                                                  int number) const {
     std::uint64_t const counter = Bits::counter_of(place);
     if constexpr (Keeps && Lanes > 1) {
       auto& kept = kept_.of[number][counter % Bits::counters / 2];
       if (kept.column != column || kept.counter != counter / 2) draw(kept, column, counter / 2);
-      return numbers_of<Number>(Bits::bits_of(place, kept.random[counter % 2]));
+      return Bits::bits_of(place, kept.random[counter % 2]);
     } else {
       auto random = Philox<Lanes>::with_equal_counters(counter, draw_);
       encrypt_with_keys(seed_ + column, random);
-      return numbers_of<Number>(Bits::bits_of(place, random));
+      return Bits::bits_of(place, random);
     }
   }
   template <class Number, class Words>
@@ -167,6 +165,31 @@ class RandomBitsOfColumns {
     else
       return __builtin_convertvector(
           bits, typename LanesOf<Number, sizeof(Words) / sizeof(std::uint64_t)>::type);
+  }
+  /// Returns the numbers of two registers in one. g++ would take them through memory, and reading
+  /// there what two stores wrote is slow.
+  template <class Number, class Words>
+  KOKKOS_FORCEINLINE_FUNCTION static auto both(Words const& first, Words const& second) {
+    static_assert(sizeof(Number) == 4);
+    using Numbers = typename LanesOf<Number, 2 * lanes>::type;
+#if defined(CAYSPIN_DETAIL_AVX512_OF_INTEGERS)
+    if constexpr (lanes == 8)
+      return reinterpret_cast<Numbers>(_mm512_permutex2var_epi32(
+          reinterpret_cast<__m512i>(first),
+          _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30),
+          reinterpret_cast<__m512i>(second)));
+#elif defined(CAYSPIN_DETAIL_AVX2_OF_INTEGERS)
+    if constexpr (lanes == 4)
+      return reinterpret_cast<Numbers>(_mm256_permute4x64_epi64(
+          _mm256_castps_si256(_mm256_shuffle_ps(reinterpret_cast<__m256>(first),
+                                                reinterpret_cast<__m256>(second), 0x88)),
+          0xD8));
+#endif
+    Numbers found;
+    auto const low = numbers_of<Number>(first), high = numbers_of<Number>(second);
+    std::memcpy(&found, &low, sizeof low);
+    std::memcpy(reinterpret_cast<char*>(&found) + sizeof low, &high, sizeof high);
+    return found;
   }
 
   /// Words of a register of columns, for two counters.
