@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Cost of [ensemble]: ns per spin and step for many small lattices and for one large lattice with
-as many spins, and their ratio. The time of a step is found from two runs, one with twice the steps
-of the other. The two lattices run in turn; the shortest time of each counts. Also prints the
+as many spins, and their ratio. The time of a step is found from two runs, one with three times the
+steps of the other. All of them run in turn; the shortest time of each counts. Also prints the
 seconds of a sweep of short runs."""
 
 import argparse
+import math
 import pathlib
 import subprocess
 import tempfile
@@ -41,19 +42,28 @@ def seconds(command):
     return time.perf_counter() - begin
 
 
-def nanoseconds(asked, folder, shape, spins, method, noise, replicas=None):
+def run_seconds(asked, folder, *scene_of):
+    file = folder / "scene.toml"
+    file.write_text(scene(*scene_of))
+    return seconds(
+        [asked.program, "run", file, "--output", folder / "run.h5", "--overwrite",
+         "--quiet", "--precision", asked.precision, "--threads", str(asked.threads)]
+    )  # fmt: skip
+
+
+def nanoseconds(asked, folder, method, noise, lattices):
+    """Returns the ns per spin and step of each lattice, given as (shape, replicas)."""
+    shape, replicas = lattices[0]
+    spins = math.prod(shape) * replicas
     steps = max(2, int(2e8 / spins / (1 if method == "heun" else 2) / (4 if noise else 1)))
-    found = []
-    for count in (steps, 2 * steps):
-        file = folder / "scene.toml"
-        file.write_text(scene(shape, method, noise, count, replicas, asked.vary))
-        found.append(
-            seconds(
-                [asked.program, "run", file, "--output", folder / "run.h5", "--overwrite",
-                 "--quiet", "--precision", asked.precision, "--threads", str(asked.threads)]
-            )
-        )  # fmt: skip
-    return 1e9 * (found[1] - found[0]) / steps / spins
+    runs = [
+        (shape, method, noise, count, replicas, asked.vary)
+        for shape, replicas in lattices
+        for count in (steps, 3 * steps)
+    ]
+    turns = [[run_seconds(asked, folder, *run) for run in runs] for _ in range(asked.rounds)]
+    least = [min(of_run) for of_run in zip(*turns, strict=True)]
+    return [1e9 * (least[i + 1] - least[i]) / (2 * steps * spins) for i in range(0, len(least), 2)]
 
 
 def sweep_seconds(asked, folder, runs):
@@ -79,19 +89,11 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         for name, (shape, replicas, large) in CASES.items():
-            spins = replicas
-            for extent in shape:
-                spins *= extent
             for method in asked.methods.split(","):
                 for noise in (False, True):
-                    turns = [
-                        (
-                            nanoseconds(asked, folder, shape, spins, method, noise, replicas),
-                            nanoseconds(asked, folder, large, spins, method, noise),
-                        )
-                        for _ in range(asked.rounds)
-                    ]
-                    of_replicas, of_one = (min(column) for column in zip(*turns, strict=True))
+                    of_replicas, of_one = nanoseconds(
+                        asked, folder, method, noise, [(shape, replicas), (large, None)]
+                    )
                     print(
                         f"{replicas} {name}, {method}{', noise' if noise else ''}: "
                         f"{of_replicas:.2f} ns a spin and step, one lattice {of_one:.2f}, "
