@@ -61,6 +61,7 @@ def model(folder):
         for edge in (128, 256):
             model_gpu.print_steps(kernels, edge)
         model_gpu.print_replicas(kernels)
+        model_gpu.print_film(model_gpu.read_all_kernels())
         model_gpu.print_kernels(kernels, 256)
     return text.getvalue()
 
