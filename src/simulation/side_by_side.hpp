@@ -26,6 +26,8 @@ struct WorkByNumber {
 /// Calls work(0) .. work(count - 1), each of which uses a run of at most `sites` sites in `space`.
 /// On a host the calls are spread over its threads, and the kernels of a run stay on its thread, if
 /// `always`, or if kernels over so few sites do so anyway. Otherwise the calls follow one another.
+/// A run notices an interrupt only after a batch of up to 1000 steps on its thread, so `always`
+/// suits only fields that fit into a cache.
 template <class Work>
 void for_each_run(std::string const& space, std::int64_t sites, bool always, std::size_t count,
                   Work const& work) {
@@ -45,7 +47,7 @@ void for_each_run(std::string const& space, std::int64_t sites, bool always, std
     return;
   }
   std::optional<cayspin::detail::KernelsStayOnThread> stay;
-  if (has_one_thread) stay.emplace();
+  if (always && has_one_thread) stay.emplace();
   for (std::size_t number = 0; number < count; ++number) work(number);
 }
 
