@@ -72,8 +72,8 @@ TEST(EnsembleMemory, OfColumnsIsNotThatOfSeparateRuns) {
   EXPECT_NO_THROW(EnsembleRun(scene, {}, false, share));
 }
 
-// Chains are stepped as lattices of columns, how many depends on the machine. Each of these is an
-// open run, and has another one for samples.
+// Chains are stepped as lattices of columns; the number of lattices depends on the machine. Each is
+// an open run, and has another one for samples.
 TEST(EnsembleMemory, OfColumnsCountsTheirRuns) {
   constexpr std::int64_t replicas = 640;
   std::string const field = "[field]\nexchange = 1.0\n[initial]\nrandom = { seed = 7 }\n";

@@ -22,7 +22,7 @@
 // the bits of a pass for each stage.
 namespace cayspin::inline v0_2::detail {
 
-/// What a thread keeps of the stages of its site: increments or, of a method that recovers them,
+/// Results of a site's stages that its thread keeps: increments or, if the method recovers them,
 /// the spins of the next stages.
 template <class Real, int Stages>
 struct KeptOfSite {
